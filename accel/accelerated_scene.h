@@ -1,0 +1,59 @@
+// A scene's geometry made ready for ray queries. No name of Embree appears here.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "accel/geometry.h"
+#include "accel/surface_filter.h"
+#include "accel/wave.h"
+
+namespace alhazen {
+
+struct BuildOptions {
+  bool robust = true;  // watertight triangle tests: 13 to 27 % of traversal, and no ray slips between two triangles
+  int threads = 0;     // for the build; 0: all
+};
+
+/// The closest hit of one ray.
+struct Hit {
+  float t, u, v;
+  uint32_t object, part, primitive;
+};
+
+/// Immutable once built, so every query is safe from any thread. `geometry` and the filter's data must outlive it:
+/// vertices, indices and shapes are read in place.
+class AcceleratedScene {
+ public:
+  /// Builds the hierarchies on the calling thread and TBB's workers. Throws `Error` naming the mesh
+  /// or shape that Embree refuses.
+  AcceleratedScene(const Geometry& geometry, const SurfaceFilter& filter, const BuildOptions& options = {});
+  ~AcceleratedScene();
+  AcceleratedScene(const AcceleratedScene&) = delete;
+  AcceleratedScene& operator=(const AcceleratedScene&) = delete;
+
+  /// The closest hit of every ray in its [t_min, t_max], surfaces' holes left out. The answers depend on the wave
+  /// alone: rays are traced in packets of consecutive lanes. Resizes `hits`.
+  void intersect(const RayWave& rays_world, Coherence coherence, HitWave& hits) const noexcept;
+
+  /// How much light arrives along every segment [t_min, t_max]: the product of the transmittances of the surfaces
+  /// crossed, 1 where there are none, 0 from the first opaque one. Resizes `visible`.
+  void transmittance(const RayWave& rays_world, Coherence coherence, Lanes<Rgb>& visible) const noexcept;
+
+  /// One ray: for tools and tests.
+  [[nodiscard]] std::optional<Hit> intersect(const Rayf& ray_world) const noexcept;
+
+  [[nodiscard]] size_t memory_bytes() const noexcept;  // held by Embree
+  [[nodiscard]] int packet_width() const noexcept;     // lanes traced together: 4, 8 or 16
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// "Embree 3.13.5, 16 lanes": what traverses, and how wide on this machine.
+[[nodiscard]] std::string traversal_version();
+
+}  // namespace alhazen

@@ -1,0 +1,77 @@
+// What a scene is made of, as plain data: meshes, analytic shapes, and where they are placed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "accel/shape.h"
+#include "core/transform.h"
+#include "core/vec.h"
+
+namespace alhazen {
+
+/// One glTF primitive of triangles, in its mesh's object space (world space once baked, see `bake_single_instances`).
+/// Attribute arrays are empty or have one element for each position.
+struct TriangleMesh {
+  std::vector<Vec3f> positions;
+  std::vector<std::array<uint32_t, 3>>
+      triangles;                        // indices into positions, all in range; counter-clockwise seen from outside
+  std::vector<Vec3f> normals;           // unit length; empty: the face's normal
+  std::vector<Vec4f> tangents;          // xyz unit length, w the sign of the bitangent cross(n, t) w
+  std::vector<std::vector<Vec2f>> uvs;  // TEXCOORD_0, TEXCOORD_1, ...; at most kMaxUvSets
+  std::vector<Vec4f> colors;            // COLOR_0, linear RGBA
+  uint32_t material = 0;                // always a valid index into Scene::materials
+  uint32_t first_primitive = 0;         // index of triangle 0 counted through the whole glTF mesh
+};
+
+inline constexpr size_t kMaxUvSets = 8;
+
+/// A glTF mesh: its parts in their order.
+struct Mesh {
+  std::string name;
+  std::vector<TriangleMesh> parts;
+};
+
+struct MeshInstance {
+  uint32_t mesh = 0;
+  uint32_t node = 0;  // glTF node index
+  Affine3d world_from_object;
+};
+
+struct ShapeInstance {
+  uint32_t shape = 0;
+  uint32_t node = 0;
+  uint32_t material = 0;  // always a valid index into Scene::materials
+  Affine3d world_from_object;
+};
+
+/// Objects are numbered through `mesh_instances`, then `shape_instances`.
+struct Geometry {
+  std::vector<Mesh> meshes;
+  std::vector<Shape> shapes;
+  std::vector<MeshInstance> mesh_instances;
+  std::vector<ShapeInstance> shape_instances;
+};
+
+/// Moves every mesh that is placed exactly once to world space, in place, and makes its instance's map the identity: an
+/// instance costs traversal 8 to 28 %, a baked mesh nothing. Normals go by the inverse transpose, tangents by the map;
+/// under a mirror the winding is reversed (second and third index swapped) and tangents change handedness, so that
+/// outside stays outside. Meshes placed never are emptied.
+void bake_single_instances(Geometry& geometry);
+
+/// The smallest box around everything placed, in world space; empty for no finite geometry.
+[[nodiscard]] Bounds3d world_bounds(const Geometry& geometry);
+
+[[nodiscard]] inline bool is_shape(const Geometry& geometry, uint32_t object) {
+  return object >= geometry.mesh_instances.size();
+}
+[[nodiscard]] inline const ShapeInstance& shape_instance(const Geometry& geometry, uint32_t object) {
+  return geometry.shape_instances[object - geometry.mesh_instances.size()];
+}
+[[nodiscard]] inline uint32_t node_of(const Geometry& geometry, uint32_t object) {
+  return is_shape(geometry, object) ? shape_instance(geometry, object).node : geometry.mesh_instances[object].node;
+}
+
+}  // namespace alhazen

@@ -1,0 +1,29 @@
+// glTF 2.0 and the ALHAZEN_ extensions to a Scene.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "renderer/scene.h"
+
+namespace alhazen {
+
+/// An image still as its file has it; decoding waits until the geometry is on its way.
+struct EncodedImage {
+  std::string place;           // for messages: "scene.gltf: /images/3"
+  std::vector<uint8_t> bytes;  // empty: could not be read, a warning was given
+};
+
+struct LoadedScene {
+  Scene scene;  // images still empty (width 0), as many as `encoded`
+  std::vector<EncodedImage> encoded;
+};
+
+using WarningSink = std::function<void(const std::string&)>;
+
+/// Throws LoadError naming file, JSON pointer, what was found and what was expected.
+[[nodiscard]] LoadedScene load_gltf(const std::filesystem::path& file, const WarningSink& warn);
+
+}  // namespace alhazen

@@ -1,0 +1,83 @@
+// Materials as scenes describe them, and their values at one point of a surface.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/opacity.h"
+#include "core/vec.h"
+#include "materials/texture.h"
+
+namespace alhazen {
+
+enum class AlphaMode : uint8_t { opaque, mask, blend };
+enum class ShadingModel : uint8_t { metallic_roughness, phong, unlit };
+
+/// ALHAZEN_materials_phong: the course's model. Symbols as in docs/scene-format.md.
+struct PhongParameters {
+  Rgb ambient{0.8f}, diffuse{0.8f}, specular{0.0f};
+  float shininess = 32;
+  Rgb reflection{0.0f}, transmission{0.0f};
+  float ior = 1.5f;
+  bool fresnel = false;
+  TextureUse ambient_texture, diffuse_texture;
+};
+
+/// A glTF material. Factors are linear; every default is the specification's.
+struct Material {
+  std::string name;
+  ShadingModel model = ShadingModel::metallic_roughness;
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  float alpha_cutoff = 0.5f;
+  bool double_sided = false;  // recorded; surfaces are shaded on both sides whatever it says
+
+  Rgba base_color{Rgb{1.0f}, 1.0f};
+  TextureUse base_color_texture;  // sRGB
+  float metallic = 1, roughness = 1;
+  TextureUse metallic_roughness_texture;  // linear: G roughness, B metallic
+  TextureUse normal_texture;              // linear, tangent space
+  float normal_scale = 1;
+  TextureUse occlusion_texture;  // linear: R
+  float occlusion_strength = 1;
+  Rgb emissive{0.0f};           // emissiveFactor x KHR_materials_emissive_strength
+  TextureUse emissive_texture;  // sRGB
+
+  float ior = 1.5f;             // KHR_materials_ior; 0 means infinite: F0 = 1 before specular
+  float specular = 1;           // KHR_materials_specular
+  TextureUse specular_texture;  // linear: A
+  Rgb specular_color{1.0f};
+  TextureUse specular_color_texture;  // sRGB
+  float transmission = 0;             // KHR_materials_transmission
+  TextureUse transmission_texture;    // linear: R
+
+  PhongParameters phong;  // read where model is phong
+};
+
+/// What a surface brings to a material: interpolated at the hit.
+struct SurfaceInputs {
+  const Vec2f* uvs = nullptr;
+  int uv_count = 0;
+  Rgba color;  // vertex colour; white where the mesh has none
+};
+
+/// Coverage of the surface at a point: 1 for OPAQUE, 0 or 1 for MASK, else the base colour's alpha in [0, 1].
+/// Base-colour factor x texture x vertex colour, as glTF says.
+[[nodiscard]] float coverage(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept;
+
+/// The share of light that passes straight through the surface: 1 in a hole of MASK; (1 - a) + a t for BLEND; else t,
+/// where t is Phong's transmissionFactor, or glTF's transmission x base colour.
+[[nodiscard]] Rgb straight_transmittance(const Material& material, const TextureTable& table,
+                                         const SurfaceInputs& inputs) noexcept;
+
+/// cutout for MASK; transparent for BLEND and for a transmission that may exceed 0; else opaque.
+[[nodiscard]] Opacity opacity(const Material& material) noexcept;
+
+/// The light that a surface sends out by itself.
+[[nodiscard]] Rgb emission(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept;
+
+/// The normal texture's direction in tangent space (x along the tangent, z along the normal), unit length, scaled by
+/// normal_scale; (0, 0, 1) without a texture or where it decodes to nothing usable.
+[[nodiscard]] Vec3f tangent_space_normal(const Material& material, const TextureTable& table,
+                                         const SurfaceInputs& inputs) noexcept;
+
+}  // namespace alhazen

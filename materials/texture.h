@@ -1,0 +1,62 @@
+// Decoded images and how a surface looks them up.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace alhazen {
+
+/// A decoded image as its file had it: rows from the top left, 1 to 4 interleaved channels (grey, grey-alpha, RGB,
+/// RGBA), straight alpha, samples not linearised. Eight bits stay eight bits. An image that could not be decoded has
+/// width 0 and reads as opaque white.
+struct TextureImage {
+  int width = 0, height = 0, channels = 0;
+  std::variant<std::vector<uint8_t>, std::vector<uint16_t>, std::vector<float>> samples;
+};
+
+enum class Wrap : uint8_t { repeat, mirrored_repeat, clamp_to_edge };
+
+/// A glTF texture: an image and its sampler. Minification does not switch to mipmaps: level 0 is always sampled.
+struct Texture {
+  uint32_t image = kNone;  // into Scene::images; kNone reads as opaque white
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+  bool nearest = false;  // magFilter NEAREST; else bilinear
+};
+
+/// A material's use of a texture (glTF textureInfo with KHR_texture_transform).
+struct TextureUse {
+  uint32_t texture = kNone;  // into Scene::textures; kNone: not used, reads as opaque white
+  uint32_t uv_set = 0;       // TEXCOORD_n, after KHR_texture_transform's override; below kMaxUvSets
+  // uv' = (xx u + xy v + x0, yx u + yy v + y0): translation * rotation * scale of KHR_texture_transform.
+  float xx = 1, xy = 0, x0 = 0, yx = 0, yy = 1, y0 = 0;
+
+  [[nodiscard]] explicit operator bool() const { return texture != kNone; }
+};
+
+enum class ColorSpace : uint8_t { linear, srgb };
+
+/// What texture look-ups read; views into a Scene.
+struct TextureTable {
+  const std::vector<Texture>* textures = nullptr;
+  const std::vector<TextureImage>* images = nullptr;
+};
+
+/// The texture at a point. `uvs` has one entry for each UV set of the surface; a set that the surface lacks reads as
+/// (0, 0).
+///
+/// Texel centres lie at half integers; wrapping is exact for any finite uv (non-finite reads as (0, 0)). With `srgb`
+/// the colour channels are decoded (IEC 61966-2-1) texel by texel before they are filtered; alpha never is. Grey fills
+/// r, g, b; a missing alpha is 1.
+[[nodiscard]] Rgba sample(const TextureTable& table, const TextureUse& use, ColorSpace space, const Vec2f* uvs,
+                          int uv_count) noexcept;
+
+/// IEC 61966-2-1 and back, for one channel. Exact at 0 and 1.
+[[nodiscard]] float linear_from_srgb(float encoded) noexcept;
+[[nodiscard]] float srgb_from_linear(float linear) noexcept;
+
+}  // namespace alhazen

@@ -1,0 +1,53 @@
+// From a scene to pixels: cells of pixels in parallel, each a sequence of waves.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "accel/accelerated_scene.h"
+#include "core/image.h"
+#include "renderer/scene.h"
+
+namespace alhazen {
+
+enum class Integrator : uint8_t { whitted, signature };
+
+struct RenderOptions {
+  int width = 1280, height = 720;
+  Integrator integrator = Integrator::whitted;
+  int max_depth = 5;
+  float min_weight = 0.001f;
+  int samples = 1;     // for each pixel
+  int threads = 0;     // 0: all
+  int tile_size = 64;  // pixels; rounded up to whole cells; never changes the picture
+};
+
+/// How far a render is, and the request to stop it: written and read by different threads.
+struct RenderControl {
+  std::atomic<bool> stop{false};
+  std::atomic<uint32_t> tiles_done{0}, tiles{0};
+  std::atomic<uint64_t> camera_rays{0}, shadow_rays{0}, mirror_rays{0}, refracted_rays{0};
+  std::atomic<uint64_t> dropped_samples{0};  // not finite
+};
+
+struct RenderResult {
+  ColorImage color;  // whitted: R, G, B, A
+  IdImage ids;       // signature: node, primitive, material
+  bool complete = true;
+};
+
+/// The filter by which `AcceleratedScene` asks this scene's materials; `scene` must outlive it, `opacity` is filled.
+[[nodiscard]] SurfaceFilter surface_filter(const Scene& scene, std::vector<Opacity>& opacity);
+
+/// Traces the picture. The same arguments give the same bits, whatever `threads` and `tile_size` are.
+[[nodiscard]] RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, const Camera& camera,
+                                  const RenderOptions& options, RenderControl& control);
+
+/// A three-quarter view of everything in `bounds` at the aspect ratio width / height.
+[[nodiscard]] Camera framing_camera(const Bounds3d& bounds, double aspect);
+
+/// Key, fill and rim light about the camera, neutral, with ambient light and a grey background where the scene names
+/// none.
+void add_studio_lights(Scene& scene, const Camera& camera);
+
+}  // namespace alhazen
