@@ -1,0 +1,85 @@
+#include "materials/material.h"
+
+namespace alhazen {
+namespace {
+
+Rgba base_color(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) {
+  const Rgba texel = sample(table, material.base_color_texture, ColorSpace::srgb, inputs.uvs, inputs.uv_count);
+  return {material.base_color.rgb * texel.rgb * inputs.color.rgb, material.base_color.a * texel.a * inputs.color.a};
+}
+
+float coverage_of_alpha(const Material& material, float alpha) {
+  switch (material.alpha_mode) {
+    case AlphaMode::opaque:
+      return 1;
+    case AlphaMode::mask:
+      return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
+    case AlphaMode::blend:
+      return alpha > 0 ? std::min(alpha, 1.0f) : 0.0f;
+  }
+  return 1;
+}
+
+bool may_transmit(const Material& material) {
+  switch (material.model) {
+    case ShadingModel::phong:
+      return max_component(material.phong.transmission) > 0;
+    case ShadingModel::metallic_roughness:
+      return material.transmission > 0;
+    case ShadingModel::unlit:
+      return false;
+  }
+  return false;
+}
+
+/// Whether the use leads to an image with texels. Opaque white, which stands in for others, is no direction.
+bool has_texels(const TextureTable& table, const TextureUse& use) {
+  if (!table.textures || !table.images || use.texture >= table.textures->size()) return false;
+  const uint32_t image = (*table.textures)[use.texture].image;
+  return image < table.images->size() && (*table.images)[image].width > 0;
+}
+
+}  // namespace
+
+float coverage(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept {
+  if (material.alpha_mode == AlphaMode::opaque) return 1;
+  return coverage_of_alpha(material, base_color(material, table, inputs).a);
+}
+
+Rgb straight_transmittance(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept {
+  const bool transmits = may_transmit(material);
+  if (!transmits && material.alpha_mode == AlphaMode::opaque) return {};
+  const Rgba base = base_color(material, table, inputs);
+  Rgb t;
+  if (transmits && material.model == ShadingModel::phong) {
+    t = material.phong.transmission;
+  } else if (transmits) {
+    const float texel =
+        sample(table, material.transmission_texture, ColorSpace::linear, inputs.uvs, inputs.uv_count).rgb.r;
+    t = base.rgb * std::clamp(material.transmission * texel, 0.0f, 1.0f);
+  }
+  return lerp(Rgb{1.0f}, t, coverage_of_alpha(material, base.a));
+}
+
+Opacity opacity(const Material& material) noexcept {
+  if (material.alpha_mode == AlphaMode::mask) return Opacity::cutout;
+  return material.alpha_mode == AlphaMode::blend || may_transmit(material) ? Opacity::transparent : Opacity::opaque;
+}
+
+Rgb emission(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept {
+  // KHR_materials_unlit: the base colour is all there is to see, whatever the lights and emissiveFactor.
+  if (material.model == ShadingModel::unlit) return base_color(material, table, inputs).rgb;
+  if (!(max_component(material.emissive) > 0)) return {};
+  return material.emissive *
+         sample(table, material.emissive_texture, ColorSpace::srgb, inputs.uvs, inputs.uv_count).rgb;
+}
+
+Vec3f tangent_space_normal(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept {
+  constexpr Vec3f kUp{0, 0, 1};
+  if (!has_texels(table, material.normal_texture)) return kUp;
+  const Rgb texel = sample(table, material.normal_texture, ColorSpace::linear, inputs.uvs, inputs.uv_count).rgb;
+  const Vec3f n{(2 * texel.r - 1) * material.normal_scale, (2 * texel.g - 1) * material.normal_scale, 2 * texel.b - 1};
+  return n.z > 0 && std::isfinite(dot(n, n)) ? normalize(n) : kUp;
+}
+
+}  // namespace alhazen
