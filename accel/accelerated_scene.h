@@ -2,8 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
-#include <span>
 #include <string>
 
 #include "accel/geometry.h"
@@ -15,12 +13,6 @@ namespace alhazen {
 struct BuildOptions {
   bool robust = true;  // watertight triangle tests: 13 to 27 % of traversal, and no ray slips between two triangles
   int threads = 0;     // for the build; 0: all
-};
-
-/// The closest hit of one ray.
-struct Hit {
-  float t, u, v;
-  uint32_t object, part, primitive;
 };
 
 /// Immutable once built, so every query is safe from any thread. `geometry` and the filter's data must outlive it:
@@ -42,14 +34,11 @@ class AcceleratedScene {
   /// crossed, 1 where there are none, 0 from the first opaque one. Resizes `visible`.
   void transmittance(const RayWave& rays_world, Coherence coherence, Lanes<Rgb>& visible) const noexcept;
 
-  /// One ray: for tools and tests.
-  [[nodiscard]] std::optional<Hit> intersect(const Rayf& ray_world) const noexcept;
-
-  [[nodiscard]] size_t memory_bytes() const noexcept;  // held by Embree
-  [[nodiscard]] int packet_width() const noexcept;     // lanes traced together: 4, 8 or 16
+  [[nodiscard]] int packet_width() const noexcept;  // lanes traced together: 4, 8 or 16
 
  private:
   struct Impl;
+  struct Traversal;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -1,0 +1,379 @@
+#include "accel/accelerated_scene.h"
+
+#include <embree3/rtcore.h>
+
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "core/error.h"
+
+namespace alhazen {
+namespace {
+
+/// A placed shape as the callbacks read it.
+struct PlacedShape {
+  Affine3d object_from_world;
+  const Shape* shape;
+  uint32_t object;
+  Opacity opacity;
+};
+
+/// What a top-level geometry number stands for.
+struct TopEntry {
+  enum class Kind : uint8_t { none, baked_part, instance, shapes } kind = Kind::none;
+  uint32_t object = kNone, part = 0;
+};
+
+/// The largest float not above, the smallest not below.
+float round_down(double x) {
+  const float f = float(x);
+  return double(f) > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+}
+float round_up(double x) { return -round_down(-x); }
+
+}  // namespace
+
+struct AcceleratedScene::Impl {
+  SurfaceFilter filter;
+  std::vector<PlacedShape> shapes;
+  std::vector<TopEntry> top;
+  std::vector<RTCScene> mesh_scenes;
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  bool has_instances = false;
+  int width = 4;
+
+  ~Impl() {
+    if (scene) rtcReleaseScene(scene);
+    for (RTCScene s : mesh_scenes)
+      if (s) rtcReleaseScene(s);
+    if (device) rtcReleaseDevice(device);
+  }
+
+  struct Ids {
+    uint32_t object, part, primitive;
+  };
+  [[nodiscard]] Ids ids(uint32_t instance, uint32_t geometry, uint32_t primitive) const {
+    if (instance != RTC_INVALID_GEOMETRY_ID) return {top[instance].object, geometry, primitive};
+    const TopEntry& entry = top[geometry];
+    if (entry.kind == TopEntry::Kind::shapes) return {shapes[primitive].object, 0, 0};
+    return {entry.object, entry.part, primitive};
+  }
+};
+
+/// Embree's callbacks and packet loops; they see Impl, nobody else does.
+struct AcceleratedScene::Traversal {
+  struct Context {
+    RTCIntersectContext base;
+    const Impl* impl;
+    Rgb* visible;  // by ray id; shadow queries only
+  };
+
+  static Context make_context(const Impl* impl, Coherence coherence, Rgb* visible) {
+    Context context{};
+    rtcInitIntersectContext(&context.base);
+    context.base.flags =
+        coherence == Coherence::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.impl = impl, context.visible = visible;
+    return context;
+  }
+
+  static Crossing crossing_of(const RTCFilterFunctionNArguments* args, const Impl& impl, unsigned lane) {
+    const Impl::Ids ids = impl.ids(RTCHitN_instID(args->hit, args->N, lane, 0),
+                                   RTCHitN_geomID(args->hit, args->N, lane), RTCHitN_primID(args->hit, args->N, lane));
+    return {
+        ids.object, ids.part, ids.primitive, RTCHitN_u(args->hit, args->N, lane), RTCHitN_v(args->hit, args->N, lane),
+        {}};
+  }
+
+  /// Triangles with holes: refuse the hits that fall into one.
+  static void leave_out_holes(const RTCFilterFunctionNArguments* args) {
+    const Impl& impl = *reinterpret_cast<const Context*>(args->context)->impl;
+    for (unsigned i = 0; i < args->N; ++i)
+      if (args->valid[i] && !impl.filter.is_present(impl.filter.data, crossing_of(args, impl, i))) args->valid[i] = 0;
+  }
+
+  /// Triangles that let light through: refuse the hit, keep the product, until nothing is left.
+  static void attenuate(const RTCFilterFunctionNArguments* args) {
+    const Context& context = *reinterpret_cast<const Context*>(args->context);
+    for (unsigned i = 0; i < args->N; ++i) {
+      if (!args->valid[i]) continue;
+      Rgb& visible = context.visible[RTCRayN_id(args->ray, args->N, i)];
+      visible *= context.impl->filter.transmittance(context.impl->filter.data, crossing_of(args, *context.impl, i));
+      if (max_component(visible) > 0) args->valid[i] = 0;
+    }
+  }
+
+  static void shape_bounds(const RTCBoundsFunctionArguments* args) {
+    const PlacedShape& placed = static_cast<const Impl*>(args->geometryUserPtr)->shapes[args->primID];
+    const Bounds3d b = std::visit([](const auto& shape) { return bounds(shape); }, *placed.shape);
+    const Bounds3d w = transform_bounds(inverse(placed.object_from_world), b);
+    // A margin of a few double roundings, so that the box is conservative.
+    const Vec3d e = (abs(w.lower) + abs(w.upper)) * 1e-14;
+    args->bounds_o->lower_x = round_down(w.lower.x - e.x), args->bounds_o->upper_x = round_up(w.upper.x + e.x);
+    args->bounds_o->lower_y = round_down(w.lower.y - e.y), args->bounds_o->upper_y = round_up(w.upper.y + e.y);
+    args->bounds_o->lower_z = round_down(w.lower.z - e.z), args->bounds_o->upper_z = round_up(w.upper.z + e.z);
+  }
+
+  static Rayd object_ray(const PlacedShape& placed, RTCRayN* ray, unsigned n, unsigned i) {
+    const Rayd world{{RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)},
+                     {RTCRayN_dir_x(ray, n, i), RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i)},
+                     RTCRayN_tnear(ray, n, i),
+                     RTCRayN_tfar(ray, n, i)};
+    return transform_ray(placed.object_from_world, world);
+  }
+
+  static void intersect_shape(const RTCIntersectFunctionNArguments* args) {
+    const Impl& impl = *static_cast<const Impl*>(args->geometryUserPtr);
+    const PlacedShape& placed = impl.shapes[args->primID];
+    RTCRayN* ray = RTCRayHitN_RayN(args->rayhit, args->N);
+    RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
+    for (unsigned i = 0; i < args->N; ++i) {
+      if (!args->valid[i]) continue;
+      const Rayd object = object_ray(placed, ray, args->N, i);
+      const Crossings found = std::visit([&](const auto& shape) { return crossings(shape, object); }, *placed.shape);
+      for (int k = 0; k < found.count; ++k) {
+        const float t = float(found.t[k]);
+        if (!(t >= RTCRayN_tnear(ray, args->N, i) && t <= RTCRayN_tfar(ray, args->N, i))) continue;
+        // At equal distances the smaller (geometry, primitive) wins, whatever the order of traversal.
+        const uint32_t other = RTCHitN_geomID(hit, args->N, i);
+        if (t == RTCRayN_tfar(ray, args->N, i) && other != RTC_INVALID_GEOMETRY_ID &&
+            (other < args->geomID || (other == args->geomID && RTCHitN_primID(hit, args->N, i) <= args->primID)))
+          continue;
+        if (placed.opacity == Opacity::cutout &&
+            !impl.filter.is_present(impl.filter.data, {placed.object, 0, 0, 0, 0, point_at(object, found.t[k])}))
+          continue;
+        RTCRayN_tfar(ray, args->N, i) = t;
+        RTCHitN_u(hit, args->N, i) = RTCHitN_v(hit, args->N, i) = 0;
+        RTCHitN_geomID(hit, args->N, i) = args->geomID;
+        RTCHitN_primID(hit, args->N, i) = args->primID;
+        RTCHitN_instID(hit, args->N, i, 0) = args->context->instID[0];
+        break;
+      }
+    }
+  }
+
+  static void occlude_shape(const RTCOccludedFunctionNArguments* args) {
+    const Context& context = *reinterpret_cast<const Context*>(args->context);
+    const Impl& impl = *context.impl;
+    const PlacedShape& placed = impl.shapes[args->primID];
+    for (unsigned i = 0; i < args->N; ++i) {
+      if (!args->valid[i]) continue;
+      const Rayd object = object_ray(placed, args->ray, args->N, i);
+      const Crossings found = std::visit([&](const auto& shape) { return crossings(shape, object); }, *placed.shape);
+      for (int k = 0; k < found.count; ++k) {
+        const float t = float(found.t[k]);
+        if (!(t >= RTCRayN_tnear(args->ray, args->N, i) && t <= RTCRayN_tfar(args->ray, args->N, i))) continue;
+        Rgb& visible = context.visible[RTCRayN_id(args->ray, args->N, i)];
+        if (placed.opacity == Opacity::opaque)
+          visible = Rgb(0.0f);
+        else
+          visible *=
+              impl.filter.transmittance(impl.filter.data, {placed.object, 0, 0, 0, 0, point_at(object, found.t[k])});
+        if (max_component(visible) > 0) continue;
+        RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
+        break;
+      }
+    }
+  }
+
+  template <class Packet>
+  static void load_rays(const RayWave& wave, size_t first, int width, Packet& ray) {
+    const size_t bytes = size_t(width) * sizeof(float);
+    std::memcpy(ray.org_x, &wave.origin.x[first], bytes), std::memcpy(ray.org_y, &wave.origin.y[first], bytes);
+    std::memcpy(ray.org_z, &wave.origin.z[first], bytes), std::memcpy(ray.dir_x, &wave.direction.x[first], bytes);
+    std::memcpy(ray.dir_y, &wave.direction.y[first], bytes), std::memcpy(ray.dir_z, &wave.direction.z[first], bytes);
+    std::memcpy(ray.tnear, &wave.t_min[first], bytes), std::memcpy(ray.tfar, &wave.t_max[first], bytes);
+    for (int i = 0; i < width; ++i)
+      ray.time[i] = 0, ray.mask[i] = ~0u, ray.flags[i] = 0, ray.id[i] = unsigned(first) + unsigned(i);
+  }
+
+  template <int width, class Packet, auto query>
+  static void intersect_packets(const Impl& impl, const RayWave& wave, Coherence coherence, HitWave& hits) {
+    Context context = make_context(&impl, coherence, nullptr);
+    const size_t n = wave.size();
+    for (size_t first = 0; first < n; first += width) {
+      const int lanes = int(std::min(size_t(width), n - first));
+      alignas(64) Packet packet;
+      alignas(64) int valid[width];
+      for (int i = 0; i < width; ++i) {
+        valid[i] = i < lanes ? -1 : 0;
+        packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+      }
+      load_rays(wave, first, width, packet.ray);
+      query(valid, impl.scene, &context.base, &packet);
+      for (int i = 0; i < lanes; ++i) {
+        const size_t k = first + size_t(i);
+        hits.object[k] = kNone;
+        if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+        const Impl::Ids ids = impl.ids(packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i]);
+        hits.object[k] = ids.object, hits.part[k] = ids.part, hits.primitive[k] = ids.primitive;
+        hits.t[k] = packet.ray.tfar[i], hits.u[k] = packet.hit.u[i], hits.v[k] = packet.hit.v[i];
+      }
+    }
+  }
+
+  template <int width, class Packet, auto query>
+  static void occlude_packets(const Impl& impl, const RayWave& wave, Coherence coherence, Lanes<Rgb>& visible) {
+    Context context = make_context(&impl, coherence, visible.data());
+    const size_t n = wave.size();
+    for (size_t first = 0; first < n; first += width) {
+      const int lanes = int(std::min(size_t(width), n - first));
+      alignas(64) Packet packet;
+      alignas(64) int valid[width];
+      for (int i = 0; i < width; ++i) valid[i] = i < lanes ? -1 : 0;
+      load_rays(wave, first, width, packet);
+      query(valid, impl.scene, &context.base, &packet);
+      for (int i = 0; i < lanes; ++i)
+        if (packet.tfar[i] < 0) visible[first + size_t(i)] = Rgb(0.0f);
+    }
+  }
+
+  static RTCScene new_scene(const Impl& impl, const BuildOptions& options) {
+    RTCScene scene = rtcNewScene(impl.device);
+    rtcSetSceneFlags(scene, options.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);  // the high quality is not deterministic over threads
+    return scene;
+  }
+
+  static void attach_part(Impl& impl, RTCScene scene, uint32_t id, const TriangleMesh& part) {
+    RTCGeometry g = rtcNewGeometry(impl.device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    // Embree reads 16 bytes at each vertex, so the last of 12 needs readable memory after it.
+    if (part.positions.capacity() > part.positions.size()) {
+      rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, part.positions.data(), 0,
+                                 sizeof(Vec3f), part.positions.size());
+    } else {
+      void* vertices = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f),
+                                               part.positions.size());
+      if (vertices) std::memcpy(vertices, part.positions.data(), part.positions.size() * sizeof(Vec3f));
+    }
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, part.triangles.data(), 0,
+                               3 * sizeof(uint32_t), part.triangles.size());
+    const Opacity opacity = impl.filter.opacity.empty() ? Opacity::opaque : impl.filter.opacity[part.material];
+    if (opacity == Opacity::cutout) rtcSetGeometryIntersectFilterFunction(g, leave_out_holes);
+    if (opacity != Opacity::opaque) rtcSetGeometryOccludedFilterFunction(g, attenuate);
+    rtcCommitGeometry(g);
+    rtcAttachGeometryByID(scene, g, id);
+    rtcReleaseGeometry(g);
+  }
+
+  static void attach_instance(Impl& impl, uint32_t id, RTCScene mesh, const Affine3d& m) {
+    const float columns[12] = {float(m.x.x), float(m.x.y),      float(m.x.z),      float(m.y.x),
+                               float(m.y.y), float(m.y.z),      float(m.z.x),      float(m.z.y),
+                               float(m.z.z), float(m.origin.x), float(m.origin.y), float(m.origin.z)};
+    RTCGeometry g = rtcNewGeometry(impl.device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(g, mesh);
+    rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+    rtcCommitGeometry(g);
+    rtcAttachGeometryByID(impl.scene, g, id);
+    rtcReleaseGeometry(g);
+  }
+
+  static void attach_shapes(Impl& impl, uint32_t id) {
+    RTCGeometry g = rtcNewGeometry(impl.device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(g, unsigned(impl.shapes.size()));
+    rtcSetGeometryUserData(g, &impl);
+    rtcSetGeometryBoundsFunction(g, shape_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(g, intersect_shape);
+    rtcSetGeometryOccludedFunction(g, occlude_shape);
+    rtcCommitGeometry(g);
+    rtcAttachGeometryByID(impl.scene, g, id);
+    rtcReleaseGeometry(g);
+  }
+};
+
+AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter& filter, const BuildOptions& options)
+    : impl_(std::make_unique<Impl>()) {
+  Impl& impl = *impl_;
+  impl.filter = filter;
+  const std::string config = options.threads > 0 ? "threads=" + std::to_string(options.threads) : "";
+  impl.device = rtcNewDevice(config.c_str());
+  if (!impl.device) throw Error("Embree has no device for this CPU", ExitStatus::internal);
+  impl.width = rtcGetDeviceProperty(impl.device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)  ? 16
+               : rtcGetDeviceProperty(impl.device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8
+                                                                                              : 4;
+  impl.scene = Traversal::new_scene(impl, options);
+  impl.mesh_scenes.assign(geometry.meshes.size(), nullptr);
+
+  std::vector<uint32_t> uses(geometry.meshes.size(), 0);
+  for (const MeshInstance& instance : geometry.mesh_instances) ++uses[instance.mesh];
+
+  for (uint32_t object = 0; object < geometry.mesh_instances.size(); ++object) {
+    const MeshInstance& instance = geometry.mesh_instances[object];
+    const Mesh& mesh = geometry.meshes[instance.mesh];
+    if (uses[instance.mesh] == 1 && instance.world_from_object == Affine3d{}) {
+      for (uint32_t part = 0; part < mesh.parts.size(); ++part) {
+        if (mesh.parts[part].triangles.empty()) continue;
+        Traversal::attach_part(impl, impl.scene, uint32_t(impl.top.size()), mesh.parts[part]);
+        impl.top.push_back({TopEntry::Kind::baked_part, object, part});
+      }
+      continue;
+    }
+    RTCScene& shared = impl.mesh_scenes[instance.mesh];
+    if (!shared) {
+      shared = Traversal::new_scene(impl, options);
+      for (uint32_t part = 0; part < mesh.parts.size(); ++part)
+        if (!mesh.parts[part].triangles.empty()) Traversal::attach_part(impl, shared, part, mesh.parts[part]);
+      rtcCommitScene(shared);
+    }
+    Traversal::attach_instance(impl, uint32_t(impl.top.size()), shared, instance.world_from_object);
+    impl.top.push_back({TopEntry::Kind::instance, object, 0});
+    impl.has_instances = true;
+  }
+  for (uint32_t i = 0; i < geometry.shape_instances.size(); ++i) {
+    const ShapeInstance& placed = geometry.shape_instances[i];
+    impl.shapes.push_back({inverse(placed.world_from_object), &geometry.shapes[placed.shape],
+                           uint32_t(geometry.mesh_instances.size()) + i,
+                           filter.opacity.empty() ? Opacity::opaque : filter.opacity[placed.material]});
+  }
+  if (!impl.shapes.empty()) {
+    Traversal::attach_shapes(impl, uint32_t(impl.top.size()));
+    impl.top.push_back({TopEntry::Kind::shapes, kNone, 0});
+  }
+  rtcCommitScene(impl.scene);
+  if (const RTCError error = rtcGetDeviceError(impl.device); error != RTC_ERROR_NONE)
+    throw Error("building the hierarchy: Embree error " + std::to_string(int(error)), ExitStatus::internal);
+}
+
+AcceleratedScene::~AcceleratedScene() = default;
+
+void AcceleratedScene::intersect(const RayWave& rays_world, Coherence coherence, HitWave& hits) const noexcept {
+  hits.resize(rays_world.size());
+  switch (impl_->width) {
+    case 16:
+      return Traversal::intersect_packets<16, RTCRayHit16, rtcIntersect16>(*impl_, rays_world, coherence, hits);
+    case 8:
+      return Traversal::intersect_packets<8, RTCRayHit8, rtcIntersect8>(*impl_, rays_world, coherence, hits);
+    default:
+      return Traversal::intersect_packets<4, RTCRayHit4, rtcIntersect4>(*impl_, rays_world, coherence, hits);
+  }
+}
+
+void AcceleratedScene::transmittance(const RayWave& rays_world, Coherence coherence,
+                                     Lanes<Rgb>& visible) const noexcept {
+  visible.resize(rays_world.size());
+  for (size_t i = 0; i < rays_world.size(); ++i) visible[i] = Rgb(1.0f);
+  // Embree 3.13.5 hangs in a coherent rtcOccluded16 on a scene with instances after an incoherent 16-wide call.
+  const bool hang = impl_->has_instances && coherence == Coherence::coherent;
+  switch (hang ? std::min(impl_->width, 8) : impl_->width) {
+    case 16:
+      return Traversal::occlude_packets<16, RTCRay16, rtcOccluded16>(*impl_, rays_world, coherence, visible);
+    case 8:
+      return Traversal::occlude_packets<8, RTCRay8, rtcOccluded8>(*impl_, rays_world, coherence, visible);
+    default:
+      return Traversal::occlude_packets<4, RTCRay4, rtcOccluded4>(*impl_, rays_world, coherence, visible);
+  }
+}
+
+int AcceleratedScene::packet_width() const noexcept { return impl_->width; }
+
+std::string traversal_version() {
+  RTCDevice device = rtcNewDevice(nullptr);
+  const bool wide = device && rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED);
+  const bool eight = device && rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED);
+  if (device) rtcReleaseDevice(device);
+  return std::string("Embree ") + RTC_VERSION_STRING + ", " + (wide ? "16" : eight ? "8" : "4") + " lanes";
+}
+
+}  // namespace alhazen
