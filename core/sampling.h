@@ -1,0 +1,52 @@
+// Counter-based samples: a function of (pixel, sample) alone, so that no picture depends on who computed it.
+#pragma once
+
+#include <cstdint>
+
+#include "core/vec.h"
+
+namespace alhazen {
+
+/// A bijective mixing of 32 bits (the "lowbias32" constants of C. Wellons' hash prospector).
+[[nodiscard]] constexpr uint32_t mix_bits(uint32_t x) noexcept {
+  x = (x ^ (x >> 16)) * 0x7feb352du;
+  x = (x ^ (x >> 15)) * 0x846ca68bu;
+  return x ^ (x >> 16);
+}
+
+[[nodiscard]] constexpr uint32_t reverse_bits(uint32_t x) noexcept {
+  x = (x >> 16) | (x << 16);
+  x = ((x & 0x00ff00ffu) << 8) | ((x & 0xff00ff00u) >> 8);
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x & 0xf0f0f0f0u) >> 4);
+  x = ((x & 0x33333333u) << 2) | ((x & 0xccccccccu) >> 2);
+  return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
+}
+
+/// Nested uniform scrambling by hashing (Burley, Practical Hash-based Owen Scrambling, JCGT 9(4), 2020).
+[[nodiscard]] constexpr uint32_t owen_scramble(uint32_t x, uint32_t seed) noexcept {
+  x = reverse_bits(x) + seed;
+  x ^= x * 0x6c50b47cu;
+  x ^= x * 0xb82f1e52u;
+  x ^= x * 0xc7afe638u;
+  x ^= x * 0x8d22f6e6u;
+  return reverse_bits(x);
+}
+
+/// Point `index` of the scrambled (0, 2)-sequence of `seed`, in [0, 1)²: any first 2^k points are stratified in every
+/// elementary interval. The first two Sobol' dimensions.
+[[nodiscard]] constexpr Vec2f sobol_owen(uint32_t index, uint32_t seed) noexcept {
+  const uint32_t i = owen_scramble(index, mix_bits(seed));
+  uint32_t y = 0;
+  for (uint32_t bits = i, v = 1u << 31; bits; bits >>= 1, v ^= v >> 1)
+    if (bits & 1) y ^= v;
+  const auto unit = [](uint32_t bits) { return float(bits >> 8) * 0x1p-24f; };
+  return {unit(owen_scramble(reverse_bits(i), mix_bits(seed + 1))), unit(owen_scramble(y, mix_bits(seed + 2)))};
+}
+
+/// A tent of half-width 1 about 0 from a uniform number: importance-sampling the reconstruction filter keeps every
+/// sample in its own pixel's sum (Ernst, Stamminger, Greiner, Filter Importance Sampling, 2006).
+[[nodiscard]] inline float sample_tent(float u) noexcept {
+  return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 * (1 - u));
+}
+
+}  // namespace alhazen

@@ -1,0 +1,185 @@
+#include "renderer/render.h"
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/sampling.h"
+#include "renderer/surface.h"
+#include "renderer/whitted.h"
+
+namespace alhazen {
+namespace {
+
+// Pixels a side of a cell: the unit that one wave belongs to, aligned to the image, so that the grouping of rays into
+// packets never depends on tiles, threads or crops.
+constexpr int kCellSize = 32;
+
+bool is_present(const void* data, const Crossing& crossing) noexcept {
+  const Scene& scene = *static_cast<const Scene*>(data);
+  const SurfacePoint s = surface_point(scene, crossing);
+  const Material& material = scene.materials[s.material];
+  return material.alpha_mode != AlphaMode::mask || coverage(material, texture_table(scene), s.inputs()) > 0;
+}
+
+Rgb light_passing(const void* data, const Crossing& crossing) noexcept {
+  const Scene& scene = *static_cast<const Scene*>(data);
+  const SurfacePoint s = surface_point(scene, crossing);
+  return straight_transmittance(scene.materials[s.material], texture_table(scene), s.inputs());
+}
+
+/// The ray through a film point (x, y) in pixels from the top left.
+Rayf camera_ray(const Camera& camera, const RenderOptions& options, double x, double y) {
+  const double half = camera.kind == Camera::Kind::perspective ? std::tan(camera.yfov / 2) : camera.ymag;
+  const double step = 2 * half / options.height;
+  const Vec3d film{(x - 0.5 * options.width) * step, (0.5 * options.height - y) * step, 0};
+  const Affine3d& m = camera.world_from_camera;
+  if (camera.kind == Camera::Kind::perspective)
+    return {Vec3f(m.origin), Vec3f(normalize(transform_vector(m, film - Vec3d{0, 0, 1})))};
+  return {Vec3f(transform_point(m, film)), Vec3f(-m.z)};
+}
+
+struct Cell {
+  int x0, y0, x1, y1;  // pixels, end exclusive
+};
+
+/// The camera rays of one sample of every pixel, neighbours side by side in blocks of 4 x 4.
+void push_camera_rays(const Camera& camera, const RenderOptions& options, const Cell& cell, uint32_t sample,
+                      PathWave& wave) {
+  wave.resize(0);
+  for (int by = 0; by < kCellSize; by += 4)
+    for (int bx = 0; bx < kCellSize; bx += 4)
+      for (int k = 0; k < 16; ++k) {
+        const int x = cell.x0 + bx + k % 4, y = cell.y0 + by + k / 4;
+        if (x >= cell.x1 || y >= cell.y1) continue;
+        double fx = x + 0.5, fy = y + 0.5;
+        if (options.samples > 1) {
+          const Vec2f u = sobol_owen(sample, mix_bits(uint32_t(x) + mix_bits(uint32_t(y))));
+          fx += double(sample_tent(u.x)), fy += double(sample_tent(u.y));
+        }
+        const uint32_t pixel = uint32_t((y - cell.y0) * kCellSize + (x - cell.x0));
+        wave.push(camera_ray(camera, options, fx, fy), pixel, Rgb(1.0f), 0, RayKind::camera);
+      }
+}
+
+struct CellWorker {
+  const Scene& scene;
+  const AcceleratedScene& accelerated;
+  const Camera& camera;
+  const RenderOptions& options;
+  RenderControl& control;
+  RenderResult& result;
+
+  void signature(const Cell& cell, WaveArena& arena) const {
+    push_camera_rays(camera, options, cell, 0, arena.pending);
+    accelerated.intersect(arena.pending.rays, Coherence::coherent, arena.hits);
+    for (size_t i = 0; i < arena.pending.size(); ++i) {
+      const uint32_t object = arena.hits.object[i];
+      if (object == kNone) continue;
+      uint32_t* out = pixel_at(result.ids, cell, arena.pending.pixel[i]);
+      out[0] = node_of(scene.geometry, object);
+      uint32_t material;
+      if (is_shape(scene.geometry, object)) {
+        out[1] = 0, material = shape_instance(scene.geometry, object).material;
+      } else {
+        const auto& parts = scene.geometry.meshes[scene.geometry.mesh_instances[object].mesh].parts;
+        const TriangleMesh& part = parts[arena.hits.part[i]];
+        out[1] = part.first_primitive + arena.hits.primitive[i], material = part.material;
+      }
+      // The default material is the last one, and none of the file's.
+      out[2] = material + 1 == scene.materials.size() ? kNone : material;
+    }
+    control.camera_rays += arena.pending.size();
+  }
+
+  void whitted(const Cell& cell, WaveArena& arena) const {
+    std::array<Rgb, kCellSize * kCellSize> radiance;
+    std::array<Vec3d, kCellSize * kCellSize> sum{};
+    std::array<uint32_t, kCellSize * kCellSize> count{};
+    for (int sample = 0; sample < options.samples; ++sample) {
+      if (control.stop) break;
+      radiance.fill(Rgb(0.0f));
+      push_camera_rays(camera, options, cell, uint32_t(sample), arena.pending);
+      trace_whitted(scene, accelerated, options, arena, radiance.data());
+      for (size_t p = 0; p < radiance.size(); ++p) {
+        if (!is_finite(radiance[p])) {
+          ++control.dropped_samples;
+          continue;
+        }
+        sum[p] += Vec3d(radiance[p].r, radiance[p].g, radiance[p].b);
+        ++count[p];
+      }
+    }
+    for (uint32_t y = 0; y < uint32_t(cell.y1 - cell.y0); ++y)
+      for (uint32_t x = 0; x < uint32_t(cell.x1 - cell.x0); ++x) {
+        const uint32_t p = y * kCellSize + x;
+        float* out = pixel_at(result.color, cell, p);
+        const double scale = count[p] ? 1.0 / count[p] : 0;
+        out[0] = float(sum[p].x * scale), out[1] = float(sum[p].y * scale), out[2] = float(sum[p].z * scale);
+        out[3] = count[p] ? 1.0f : 0.0f;
+      }
+    control.camera_rays += arena.rays_by_kind[0] + arena.rays_by_kind[3];
+    control.mirror_rays += arena.rays_by_kind[1], control.refracted_rays += arena.rays_by_kind[2];
+    control.shadow_rays += arena.shadow_rays;
+    arena.rays_by_kind = {}, arena.shadow_rays = 0;
+  }
+
+  template <class T>
+  static T* pixel_at(PixelBuffer<T>& image, const Cell& cell, uint32_t p) {
+    return image.at(cell.x0 + int(p % kCellSize), cell.y0 + int(p / kCellSize));
+  }
+};
+
+}  // namespace
+
+SurfaceFilter surface_filter(const Scene& scene, std::vector<Opacity>& opacities) {
+  opacities.clear();
+  for (const Material& material : scene.materials) opacities.push_back(opacity(material));
+  return {opacities, &scene, is_present, light_passing};
+}
+
+RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, const Camera& camera,
+                    const RenderOptions& options, RenderControl& control) {
+  RenderResult result;
+  const size_t pixels = size_t(options.width) * size_t(options.height);
+  if (options.integrator == Integrator::signature) {
+    result.ids = {
+        options.width, options.height, {"node", "primitive", "material"}, std::vector<uint32_t>(pixels * 3, kNone)};
+  } else {
+    result.color = {options.width, options.height, {"R", "G", "B", "A"}, std::vector<float>(pixels * 4, 0.0f)};
+  }
+  const CellWorker worker{scene, accelerated, camera, options, control, result};
+  const int cells_x = (options.width + kCellSize - 1) / kCellSize,
+            cells_y = (options.height + kCellSize - 1) / kCellSize;
+  const int side = std::max(1, (options.tile_size + kCellSize - 1) / kCellSize);  // cells a side of a tile
+  const int tiles_x = (cells_x + side - 1) / side, tiles_y = (cells_y + side - 1) / side;
+  control.tiles = uint32_t(tiles_x * tiles_y);
+
+  tbb::enumerable_thread_specific<WaveArena> arenas;
+  tbb::task_arena threads(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  threads.execute([&] {
+    tbb::parallel_for(0, tiles_x * tiles_y, [&](int tile) {
+      if (control.stop) return;
+      const int cx0 = tile % tiles_x * side, cy0 = tile / tiles_x * side;
+      for (int cy = cy0; cy < std::min(cy0 + side, cells_y); ++cy)
+        for (int cx = cx0; cx < std::min(cx0 + side, cells_x); ++cx) {
+          if (control.stop) return;
+          const Cell cell{cx * kCellSize, cy * kCellSize, std::min((cx + 1) * kCellSize, options.width),
+                          std::min((cy + 1) * kCellSize, options.height)};
+          if (options.integrator == Integrator::signature)
+            worker.signature(cell, arenas.local());
+          else
+            worker.whitted(cell, arenas.local());
+        }
+      ++control.tiles_done;
+    });
+  });
+  result.complete = control.tiles_done == control.tiles;
+  return result;
+}
+
+}  // namespace alhazen

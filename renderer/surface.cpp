@@ -1,0 +1,114 @@
+#include "renderer/surface.h"
+
+#include <cmath>
+#include <limits>
+
+namespace alhazen {
+namespace {
+
+constexpr double kUlp = 0x1p-24;  // half the spacing of floats, relative
+
+void interpolate_attributes(const TriangleMesh& part, const std::array<uint32_t, 3>& corner, float u, float v,
+                            SurfacePoint& s) {
+  const float w = 1 - u - v;
+  s.uv_count = int(part.uvs.size());
+  for (int k = 0; k < s.uv_count; ++k) {
+    const auto& uv = part.uvs[size_t(k)];
+    s.uvs[size_t(k)] = uv[corner[0]] * w + uv[corner[1]] * u + uv[corner[2]] * v;
+  }
+  if (!part.colors.empty()) {
+    const Vec4f &a = part.colors[corner[0]], &b = part.colors[corner[1]], &c = part.colors[corner[2]];
+    s.color = {{w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y, w * a.z + u * b.z + v * c.z},
+               w * a.w + u * b.w + v * c.w};
+  }
+}
+
+SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v) {
+  const MeshInstance& instance = scene.geometry.mesh_instances[ids.object];
+  const TriangleMesh& part = scene.geometry.meshes[instance.mesh].parts[ids.part];
+  const Affine3d& m = instance.world_from_object;
+  const auto& corner = part.triangles[ids.primitive];
+  SurfacePoint s;
+  s.material = part.material;
+  interpolate_attributes(part, corner, u, v, s);
+
+  const Vec3d p0 = transform_point(m, Vec3d(part.positions[corner[0]]));
+  const Vec3d p1 = transform_point(m, Vec3d(part.positions[corner[1]]));
+  const Vec3d p2 = transform_point(m, Vec3d(part.positions[corner[2]]));
+  s.p_world = p0 * (1.0 - u - v) + p1 * double(u) + p2 * double(v);
+  Vec3d ng = normalize(cross(p1 - p0, p2 - p0));
+  if (determinant(m) < 0) ng = -ng;
+  s.ng_world = s.ns_world = Vec3f(ng);
+  // Rounding of the position, of the vertices relative to it in the traversal, and of an instance's ray transform.
+  const double extent = max_component(max(abs(p1 - p0), abs(p2 - p0)));
+  const bool baked = m == Affine3d{};
+  s.offset =
+      float(kUlp * ((baked ? 4 : 16) * (max_component(abs(s.p_world)) + max_component(abs(m.origin))) + 8 * extent));
+
+  const float w = 1 - u - v;
+  if (!part.normals.empty()) {
+    const Vec3f n = part.normals[corner[0]] * w + part.normals[corner[1]] * u + part.normals[corner[2]] * v;
+    const Vec3d n_world = normalize(transform_normal(m, Vec3d(n)));
+    if (is_finite(n_world) && dot(n_world, n_world) > 0) s.ns_world = Vec3f(n_world);
+  }
+  if (!part.tangents.empty()) {
+    const Vec4f &a = part.tangents[corner[0]], &b = part.tangents[corner[1]], &c = part.tangents[corner[2]];
+    const Vec3f t{w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y, w * a.z + u * b.z + v * c.z};
+    s.tangent_world = Vec3f(normalize(transform_vector(m, Vec3d(t))));
+    s.bitangent_sign = determinant(m) < 0 ? -a.w : a.w;
+  }
+  return s;
+}
+
+SurfacePoint shape_point(const Scene& scene, uint32_t object, const Vec3d& p_near_object) {
+  const ShapeInstance& placed = shape_instance(scene.geometry, object);
+  const Affine3d& m = placed.world_from_object;
+  SurfacePoint s;
+  s.material = placed.material;
+  std::visit(
+      [&](const auto& shape) {
+        const Vec3d p = project(shape, p_near_object);
+        s.p_world = transform_point(m, p);
+        s.ng_world = s.ns_world = Vec3f(normalize(transform_normal(m, normal(shape, p))));
+        s.tangent_world = Vec3f(normalize(transform_vector(m, u_tangent(shape, p))));
+        s.bitangent_sign = determinant(m) < 0 ? 1.0f : -1.0f;  // v runs down
+        s.uvs[0] = texture_coordinates(shape, p);
+      },
+      scene.geometry.shapes[placed.shape]);
+  s.uv_count = 1;
+  // The intersectors work in double on the float ray, so only the rounding of the origin has to be cleared.
+  s.offset = float(2 * kUlp * max_component(abs(s.p_world)));
+  return s;
+}
+
+}  // namespace
+
+SurfacePoint surface_point(const Scene& scene, const Rayf& ray_world, const HitIds& ids, float t, float u,
+                           float v) noexcept {
+  if (!is_shape(scene.geometry, ids.object)) return mesh_point(scene, ids, u, v);
+  const Affine3d object_from_world = inverse(shape_instance(scene.geometry, ids.object).world_from_object);
+  const Vec3d p_world = Vec3d(ray_world.origin) + Vec3d(ray_world.direction) * double(t);
+  return shape_point(scene, ids.object, transform_point(object_from_world, p_world));
+}
+
+SurfacePoint surface_point(const Scene& scene, const Crossing& crossing) noexcept {
+  if (is_shape(scene.geometry, crossing.object)) return shape_point(scene, crossing.object, crossing.p_object);
+  const MeshInstance& instance = scene.geometry.mesh_instances[crossing.object];
+  const TriangleMesh& part = scene.geometry.meshes[instance.mesh].parts[crossing.part];
+  SurfacePoint s;
+  s.material = part.material;
+  interpolate_attributes(part, part.triangles[crossing.primitive], crossing.u, crossing.v, s);
+  return s;
+}
+
+Vec3f spawn_origin(const SurfacePoint& point, const Vec3f& direction) noexcept {
+  const Vec3d n = Vec3d(point.ng_world) * (dot(point.ng_world, direction) < 0 ? -1.0 : 1.0);
+  const Vec3d p = point.p_world + n * double(point.offset);
+  const auto away = [](double x, double toward) {
+    const float inf = std::numeric_limits<float>::infinity();
+    return toward > 0 ? std::nextafter(float(x), inf) : toward < 0 ? std::nextafter(float(x), -inf) : float(x);
+  };
+  return {away(p.x, n.x), away(p.y, n.y), away(p.z, n.z)};
+}
+
+}  // namespace alhazen

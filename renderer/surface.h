@@ -1,0 +1,40 @@
+// A hit worked out: position, normals, texture coordinates, colour, material. Once, for the winner.
+#pragma once
+
+#include <array>
+
+#include "accel/accelerated_scene.h"
+#include "renderer/scene.h"
+
+namespace alhazen {
+
+struct SurfacePoint {
+  Vec3d p_world;
+  float offset = 0;          // metres along the geometric normal that clear the position's error
+  Vec3f ng_world, ns_world;  // geometric and interpolated normal, unit, outward
+  Vec3f tangent_world;       // unit or zero
+  float bitangent_sign = 1;
+  std::array<Vec2f, kMaxUvSets> uvs;
+  int uv_count = 0;
+  Rgba color;
+  uint32_t material = 0;
+
+  [[nodiscard]] SurfaceInputs inputs() const { return {uvs.data(), uv_count, color}; }
+};
+
+struct HitIds {
+  uint32_t object, part, primitive;
+};
+
+/// The surface where `ray_world` hits at t, with barycentric u and v for triangles.
+[[nodiscard]] SurfacePoint surface_point(const Scene& scene, const Rayf& ray_world, const HitIds& ids, float t, float u,
+                                         float v) noexcept;
+
+/// Only what texture look-ups need, for crossings met in traversal.
+[[nodiscard]] SurfacePoint surface_point(const Scene& scene, const Crossing& crossing) noexcept;
+
+/// Where a ray that leaves `point` along `direction` starts: on the exact side of the surface, further off than the
+/// error of the position and of the traversal's own arithmetic.
+[[nodiscard]] Vec3f spawn_origin(const SurfacePoint& point, const Vec3f& direction) noexcept;
+
+}  // namespace alhazen
