@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
@@ -698,7 +699,7 @@ class Loader {
       s.only({"radius"});
       const double radius = s.number_or("radius", 1);
       if (!(radius > 0)) s["radius"].expected("more than 0");
-      out_.scene.geometry.shapes.emplace_back(Sphere{radius});
+      out_.scene.geometry.shapes.emplace_back(Sphere{float(radius)});
     }
   }
 
