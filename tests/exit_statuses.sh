@@ -29,5 +29,18 @@ expect 3 render "$work/absent.gltf" -o "$work/a.png"
 expect 3 render "$work/truncated.gltf" -o "$work/a.png"
 expect 3 render "$work/required.gltf" -o "$work/a.png"
 expect 4 render "$scene" -o "$work/absent/a.png"
+# A signal stops at the next cell and saves what is finished.
+for signal in INT:130 TERM:143; do
+  "$program" render "$scene" -o "$work/partial.exr" --spp 4096 --quiet >"$work/log" 2>&1 &
+  sleep 1
+  kill -"${signal%:*}" $!
+  wait $!
+  got=$?
+  if [ "$got" != "${signal#*:}" ] || [ ! -s "$work/partial.exr" ]; then
+    echo "SIG${signal%:*}: status $got, or no picture"
+    failed=1
+  fi
+  rm -f "$work/partial.exr"
+done
 [ -z "$(find "$work" -name '*.part*')" ] || { echo 'a temporary file was left behind'; failed=1; }
 exit $failed
