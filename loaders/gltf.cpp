@@ -1,5 +1,6 @@
 #include "loaders/gltf.h"
 
+#include <tbb/parallel_for.h>
 #include <tiny_gltf.h>
 
 #include <cstring>
@@ -12,6 +13,7 @@
 #include <span>
 
 #include "core/error.h"
+#include "loaders/tangents.h"
 
 namespace alhazen {
 namespace {
@@ -268,6 +270,7 @@ class Loader {
     lights(root);
     shapes(root);
     meshes(root);
+    tangents();
     nodes(root);
     return std::move(out_);
   }
@@ -740,6 +743,7 @@ class Loader {
       const Vec3f t = normalize(Vec3f{v[0], v[1], v[2]});
       return Vec4f{t.x, t.y, t.z, v[3] < 0 ? -1.0f : 1.0f};
     });
+    if (part.normals.empty()) part.tangents.clear();  // as the specification asks
     part.colors = attribute<Vec4f, 4>(attributes, "COLOR_0", count, [](const float* v, int n) {
       return Vec4f{v[0], v[1], v[2], n == 4 ? v[3] : 1.0f};
     });
@@ -811,6 +815,17 @@ class Loader {
       }
       out_.scene.geometry.meshes.push_back(std::move(mesh));
     }
+  }
+
+  /// Tangents where a normal texture needs them and the mesh has none.
+  void tangents() {
+    std::vector<TriangleMesh*> lacking;
+    for (Mesh& mesh : out_.scene.geometry.meshes)
+      for (TriangleMesh& part : mesh.parts)
+        if (part.tangents.empty() && out_.scene.materials[part.material].normal_texture) lacking.push_back(&part);
+    tbb::parallel_for(size_t{0}, lacking.size(), [&](size_t i) {
+      generate_tangents(*lacking[i], out_.scene.materials[lacking[i]->material].normal_texture.uv_set);
+    });
   }
 
   static Affine3d local(const Ref& r) {
