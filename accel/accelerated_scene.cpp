@@ -1,11 +1,10 @@
 #include "accel/accelerated_scene.h"
 
-#include <embree3/rtcore.h>
-
 #include <cstring>
 #include <limits>
 #include <vector>
 
+#include "accel/embree.h"
 #include "core/error.h"
 
 namespace alhazen {
@@ -64,20 +63,11 @@ struct AcceleratedScene::Impl {
 
 /// Embree's callbacks and packet loops; they see Impl, nobody else does.
 struct AcceleratedScene::Traversal {
-  struct Context {
-    RTCIntersectContext base;
+  struct Query : embree::Query {
     const Impl* impl;
     Rgb* visible;  // by ray id; shadow queries only
+    Query(const Impl& i, Coherence rays, Rgb* v) : embree::Query(rays), impl(&i), visible(v) {}
   };
-
-  static Context make_context(const Impl* impl, Coherence coherence, Rgb* visible) {
-    Context context{};
-    rtcInitIntersectContext(&context.base);
-    context.base.flags =
-        coherence == Coherence::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    context.impl = impl, context.visible = visible;
-    return context;
-  }
 
   static Crossing crossing_of(const RTCFilterFunctionNArguments* args, const Impl& impl, unsigned lane) {
     const Impl::Ids ids = impl.ids(RTCHitN_instID(args->hit, args->N, lane, 0),
@@ -89,18 +79,18 @@ struct AcceleratedScene::Traversal {
 
   /// Triangles with holes: refuse the hits that fall into one.
   static void leave_out_holes(const RTCFilterFunctionNArguments* args) {
-    const Impl& impl = *reinterpret_cast<const Context*>(args->context)->impl;
+    const Impl& impl = *embree::query_of<Query>(args).impl;
     for (unsigned i = 0; i < args->N; ++i)
       if (args->valid[i] && !impl.filter.is_present(impl.filter.data, crossing_of(args, impl, i))) args->valid[i] = 0;
   }
 
   /// Triangles that let light through: refuse the hit, keep the product, until nothing is left.
   static void attenuate(const RTCFilterFunctionNArguments* args) {
-    const Context& context = *reinterpret_cast<const Context*>(args->context);
+    const Query& query = embree::query_of<Query>(args);
     for (unsigned i = 0; i < args->N; ++i) {
       if (!args->valid[i]) continue;
-      Rgb& visible = context.visible[RTCRayN_id(args->ray, args->N, i)];
-      visible *= context.impl->filter.transmittance(context.impl->filter.data, crossing_of(args, *context.impl, i));
+      Rgb& visible = query.visible[RTCRayN_id(args->ray, args->N, i)];
+      visible *= query.impl->filter.transmittance(query.impl->filter.data, crossing_of(args, *query.impl, i));
       if (max_component(visible) > 0) args->valid[i] = 0;
     }
   }
@@ -131,6 +121,7 @@ struct AcceleratedScene::Traversal {
     RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
     for (unsigned i = 0; i < args->N; ++i) {
       if (!args->valid[i]) continue;
+      embree::reject(args, i);  // until a crossing is found to count
       const Rayd object = object_ray(placed, ray, args->N, i);
       const Crossings found = std::visit([&](const auto& shape) { return crossings(shape, object); }, *placed.shape);
       for (int k = 0; k < found.count; ++k) {
@@ -144,35 +135,32 @@ struct AcceleratedScene::Traversal {
         if (placed.opacity == Opacity::cutout &&
             !impl.filter.is_present(impl.filter.data, {placed.object, 0, 0, 0, 0, point_at(object, found.t[k])}))
           continue;
-        RTCRayN_tfar(ray, args->N, i) = t;
-        RTCHitN_u(hit, args->N, i) = RTCHitN_v(hit, args->N, i) = 0;
-        RTCHitN_geomID(hit, args->N, i) = args->geomID;
-        RTCHitN_primID(hit, args->N, i) = args->primID;
-        RTCHitN_instID(hit, args->N, i, 0) = args->context->instID[0];
+        embree::accept(args, i, t);
         break;
       }
     }
   }
 
   static void occlude_shape(const RTCOccludedFunctionNArguments* args) {
-    const Context& context = *reinterpret_cast<const Context*>(args->context);
-    const Impl& impl = *context.impl;
+    const Query& query = embree::query_of<Query>(args);
+    const Impl& impl = *query.impl;
     const PlacedShape& placed = impl.shapes[args->primID];
     for (unsigned i = 0; i < args->N; ++i) {
       if (!args->valid[i]) continue;
+      embree::reject(args, i);  // until a crossing is found to count
       const Rayd object = object_ray(placed, args->ray, args->N, i);
       const Crossings found = std::visit([&](const auto& shape) { return crossings(shape, object); }, *placed.shape);
       for (int k = 0; k < found.count; ++k) {
         const float t = float(found.t[k]);
         if (!(t >= RTCRayN_tnear(args->ray, args->N, i) && t <= RTCRayN_tfar(args->ray, args->N, i))) continue;
-        Rgb& visible = context.visible[RTCRayN_id(args->ray, args->N, i)];
+        Rgb& visible = query.visible[RTCRayN_id(args->ray, args->N, i)];
         if (placed.opacity == Opacity::opaque)
           visible = Rgb(0.0f);
         else
           visible *=
               impl.filter.transmittance(impl.filter.data, {placed.object, 0, 0, 0, 0, point_at(object, found.t[k])});
         if (max_component(visible) > 0) continue;
-        RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
+        embree::accept(args, i);
         break;
       }
     }
@@ -186,23 +174,23 @@ struct AcceleratedScene::Traversal {
     std::memcpy(ray.dir_y, &wave.direction.y[first], bytes), std::memcpy(ray.dir_z, &wave.direction.z[first], bytes);
     std::memcpy(ray.tnear, &wave.t_min[first], bytes), std::memcpy(ray.tfar, &wave.t_max[first], bytes);
     for (int i = 0; i < width; ++i)
-      ray.time[i] = 0, ray.mask[i] = ~0u, ray.flags[i] = 0, ray.id[i] = unsigned(first) + unsigned(i);
+      ray.time[i] = 0, ray.mask[i] = embree::kEveryRay, ray.flags[i] = 0, ray.id[i] = unsigned(first) + unsigned(i);
   }
 
-  template <int width, class Packet, auto query>
+  template <int width>
   static void intersect_packets(const Impl& impl, const RayWave& wave, Coherence coherence, HitWave& hits) {
-    Context context = make_context(&impl, coherence, nullptr);
+    Query query(impl, coherence, nullptr);
     const size_t n = wave.size();
     for (size_t first = 0; first < n; first += width) {
       const int lanes = int(std::min(size_t(width), n - first));
-      alignas(64) Packet packet;
+      alignas(64) typename embree::Packets<width>::RayHit packet;
       alignas(64) int valid[width];
       for (int i = 0; i < width; ++i) {
         valid[i] = i < lanes ? -1 : 0;
         packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
       }
       load_rays(wave, first, width, packet.ray);
-      query(valid, impl.scene, &context.base, &packet);
+      embree::intersect<width>(valid, impl.scene, query, packet);
       for (int i = 0; i < lanes; ++i) {
         const size_t k = first + size_t(i);
         hits.object[k] = kNone;
@@ -214,17 +202,17 @@ struct AcceleratedScene::Traversal {
     }
   }
 
-  template <int width, class Packet, auto query>
+  template <int width>
   static void occlude_packets(const Impl& impl, const RayWave& wave, Coherence coherence, Lanes<Rgb>& visible) {
-    Context context = make_context(&impl, coherence, visible.data());
+    Query query(impl, coherence, visible.data());
     const size_t n = wave.size();
     for (size_t first = 0; first < n; first += width) {
       const int lanes = int(std::min(size_t(width), n - first));
-      alignas(64) Packet packet;
+      alignas(64) typename embree::Packets<width>::Ray packet;
       alignas(64) int valid[width];
       for (int i = 0; i < width; ++i) valid[i] = i < lanes ? -1 : 0;
       load_rays(wave, first, width, packet);
-      query(valid, impl.scene, &context.base, &packet);
+      embree::occluded<width>(valid, impl.scene, query, packet);
       for (int i = 0; i < lanes; ++i)
         if (packet.tfar[i] < 0) visible[first + size_t(i)] = Rgb(0.0f);
     }
@@ -238,7 +226,7 @@ struct AcceleratedScene::Traversal {
   }
 
   static void attach_part(Impl& impl, RTCScene scene, uint32_t id, const TriangleMesh& part) {
-    RTCGeometry g = rtcNewGeometry(impl.device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    RTCGeometry g = embree::new_geometry(impl.device, RTC_GEOMETRY_TYPE_TRIANGLE);
     // Embree reads 16 bytes at each vertex, so the last of 12 needs readable memory after it.
     if (part.positions.capacity() > part.positions.size()) {
       rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, part.positions.data(), 0,
@@ -262,7 +250,7 @@ struct AcceleratedScene::Traversal {
     const float columns[12] = {float(m.x.x), float(m.x.y),      float(m.x.z),      float(m.y.x),
                                float(m.y.y), float(m.y.z),      float(m.z.x),      float(m.z.y),
                                float(m.z.z), float(m.origin.x), float(m.origin.y), float(m.origin.z)};
-    RTCGeometry g = rtcNewGeometry(impl.device, RTC_GEOMETRY_TYPE_INSTANCE);
+    RTCGeometry g = embree::new_geometry(impl.device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(g, mesh);
     rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
     rtcCommitGeometry(g);
@@ -271,7 +259,7 @@ struct AcceleratedScene::Traversal {
   }
 
   static void attach_shapes(Impl& impl, uint32_t id) {
-    RTCGeometry g = rtcNewGeometry(impl.device, RTC_GEOMETRY_TYPE_USER);
+    RTCGeometry g = embree::new_geometry(impl.device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(g, unsigned(impl.shapes.size()));
     rtcSetGeometryUserData(g, &impl);
     rtcSetGeometryBoundsFunction(g, shape_bounds, nullptr);
@@ -290,9 +278,7 @@ AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter
   const std::string config = options.threads > 0 ? "threads=" + std::to_string(options.threads) : "";
   impl.device = rtcNewDevice(config.c_str());
   if (!impl.device) throw Error("Embree has no device for this CPU", ExitStatus::internal);
-  impl.width = rtcGetDeviceProperty(impl.device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)  ? 16
-               : rtcGetDeviceProperty(impl.device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8
-                                                                                              : 4;
+  impl.width = embree::packet_width(impl.device);
   impl.scene = Traversal::new_scene(impl, options);
   impl.mesh_scenes.assign(geometry.meshes.size(), nullptr);
 
@@ -342,11 +328,11 @@ void AcceleratedScene::intersect(const RayWave& rays_world, Coherence coherence,
   hits.resize(rays_world.size());
   switch (impl_->width) {
     case 16:
-      return Traversal::intersect_packets<16, RTCRayHit16, rtcIntersect16>(*impl_, rays_world, coherence, hits);
+      return Traversal::intersect_packets<16>(*impl_, rays_world, coherence, hits);
     case 8:
-      return Traversal::intersect_packets<8, RTCRayHit8, rtcIntersect8>(*impl_, rays_world, coherence, hits);
+      return Traversal::intersect_packets<8>(*impl_, rays_world, coherence, hits);
     default:
-      return Traversal::intersect_packets<4, RTCRayHit4, rtcIntersect4>(*impl_, rays_world, coherence, hits);
+      return Traversal::intersect_packets<4>(*impl_, rays_world, coherence, hits);
   }
 }
 
@@ -354,15 +340,15 @@ void AcceleratedScene::transmittance(const RayWave& rays_world, Coherence cohere
                                      Lanes<Rgb>& visible) const noexcept {
   visible.resize(rays_world.size());
   for (size_t i = 0; i < rays_world.size(); ++i) visible[i] = Rgb(1.0f);
-  // Embree 3.13.5 hangs in a coherent rtcOccluded16 on a scene with instances after an incoherent 16-wide call.
-  const bool hang = impl_->has_instances && coherence == Coherence::coherent;
-  switch (hang ? std::min(impl_->width, 8) : impl_->width) {
+  const bool hangs =
+      embree::kCoherentOccluded16HangsOnInstances && impl_->has_instances && coherence == Coherence::coherent;
+  switch (hangs ? std::min(impl_->width, 8) : impl_->width) {
     case 16:
-      return Traversal::occlude_packets<16, RTCRay16, rtcOccluded16>(*impl_, rays_world, coherence, visible);
+      return Traversal::occlude_packets<16>(*impl_, rays_world, coherence, visible);
     case 8:
-      return Traversal::occlude_packets<8, RTCRay8, rtcOccluded8>(*impl_, rays_world, coherence, visible);
+      return Traversal::occlude_packets<8>(*impl_, rays_world, coherence, visible);
     default:
-      return Traversal::occlude_packets<4, RTCRay4, rtcOccluded4>(*impl_, rays_world, coherence, visible);
+      return Traversal::occlude_packets<4>(*impl_, rays_world, coherence, visible);
   }
 }
 
@@ -370,10 +356,9 @@ int AcceleratedScene::packet_width() const noexcept { return impl_->width; }
 
 std::string traversal_version() {
   RTCDevice device = rtcNewDevice(nullptr);
-  const bool wide = device && rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED);
-  const bool eight = device && rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED);
+  const int width = device ? embree::packet_width(device) : 0;
   if (device) rtcReleaseDevice(device);
-  return std::string("Embree ") + RTC_VERSION_STRING + ", " + (wide ? "16" : eight ? "8" : "4") + " lanes";
+  return std::string("Embree ") + RTC_VERSION_STRING + ", " + std::to_string(width) + " lanes";
 }
 
 }  // namespace alhazen
