@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <future>
 #include <random>
 
 #include "accel/accelerated_scene.h"
@@ -172,30 +171,20 @@ TEST(AcceleratedScene, SpheresAgreeWithBruteForce) {
 }
 
 TEST(AcceleratedScene, CoherentShadowsAfterIncoherentRaysOnInstancesReturn) {
-  // The sequence on which Embree 3.13.5 does not return with 16-wide coherent shadow packets.
-  const auto sequence = [] {
-    const Scene scene = spheres_over_ground(1, true);
-    const AcceleratedScene accelerated(scene.geometry, {});
-    std::mt19937 rng(5);
-    std::uniform_real_distribution<float> u(-1, 1);
-    RayWave wave;
-    wave.resize(4096);
-    for (size_t i = 0; i < wave.size(); ++i) wave.set(i, {{u(rng), 1, u(rng)}, {u(rng), u(rng), u(rng)}});
-    HitWave hits;
-    Lanes<Rgb> visible;
-    accelerated.intersect(wave, Coherence::incoherent, hits);
-    accelerated.transmittance(wave, Coherence::coherent, visible);
-    return true;
-  };
-  std::packaged_task<bool()> task(sequence);
-  std::future<bool> done = task.get_future();
-  std::thread thread(std::move(task));
-  if (done.wait_for(std::chrono::seconds(60)) != std::future_status::ready) {
-    ADD_FAILURE() << "the shadow query does not return";
-    std::abort();  // the thread cannot be joined
-  }
-  thread.join();
-  EXPECT_TRUE(done.get());
+  // The sequence on which Embree 3.13.5 does not return with 16-wide coherent shadow packets: the test's time limit is
+  // the claim.
+  const Scene scene = spheres_over_ground(1, true);
+  const AcceleratedScene accelerated(scene.geometry, {});
+  std::mt19937 rng(5);
+  std::uniform_real_distribution<float> u(-1, 1);
+  RayWave wave;
+  wave.resize(4096);
+  for (size_t i = 0; i < wave.size(); ++i) wave.set(i, {{u(rng), 1, u(rng)}, {u(rng), u(rng), u(rng)}});
+  HitWave hits;
+  Lanes<Rgb> visible;
+  accelerated.intersect(wave, Coherence::incoherent, hits);
+  accelerated.transmittance(wave, Coherence::coherent, visible);
+  EXPECT_EQ(visible.size(), wave.size());
 }
 
 }  // namespace

@@ -1,0 +1,29 @@
+// Bare Embree on the same geometry and rays: what ours is compared to. Outside accel/ this is the one place that
+// includes Embree, since a baseline that went through our own code would say nothing.
+#pragma once
+
+#include "accel/embree.h"
+#include "accel/geometry.h"
+
+namespace alhazen {
+
+/// Meshes placed by the identity as Embree's triangles, spheres moved but not scaled as its SPHERE_POINTs, everything
+/// opaque. `geometry` must outlive it. Terminates where the geometry holds anything else, or Embree reports an error.
+class EmbreeBaseline {
+ public:
+  explicit EmbreeBaseline(const Geometry& geometry);
+  ~EmbreeBaseline();
+  EmbreeBaseline(const EmbreeBaseline&) = delete;
+  EmbreeBaseline& operator=(const EmbreeBaseline&) = delete;
+
+  /// How many rays of the wave hit anything; and how many segments are blocked. Packets of the native width.
+  size_t intersect(const RayWave& rays_world, Coherence coherence) const;
+  size_t occluded(const RayWave& rays_world, Coherence coherence) const;
+
+ private:
+  RTCDevice device_;
+  RTCScene scene_;
+  int width_;
+};
+
+}  // namespace alhazen
