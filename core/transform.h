@@ -18,7 +18,7 @@ struct Affine3 {
       : x(x_), y(y_), z(z_), origin(o) {}
   template <class U>
   constexpr explicit Affine3(const Affine3<U>& m) : x(m.x), y(m.y), z(m.z), origin(m.origin) {}
-  friend constexpr bool operator==(const Affine3&, const Affine3&) = default;
+  friend bool operator==(const Affine3&, const Affine3&) = default;
 };
 
 using Affine3f = Affine3<float>;

@@ -12,7 +12,7 @@ namespace alhazen {
 template <class T>
 struct Vec2 {
   T x = 0, y = 0;
-  friend constexpr bool operator==(Vec2, Vec2) = default;
+  friend bool operator==(Vec2, Vec2) = default;
 };
 
 template <class T>
@@ -26,13 +26,13 @@ struct Vec3 {
   constexpr explicit Vec3(const Vec3<U>& v) : x(T(v.x)), y(T(v.y)), z(T(v.z)) {}
 
   [[nodiscard]] constexpr T operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
-  friend constexpr bool operator==(const Vec3&, const Vec3&) = default;
+  friend bool operator==(const Vec3&, const Vec3&) = default;
 };
 
 template <class T>
 struct Vec4 {
   T x = 0, y = 0, z = 0, w = 0;
-  friend constexpr bool operator==(const Vec4&, const Vec4&) = default;
+  friend bool operator==(const Vec4&, const Vec4&) = default;
 };
 
 using Vec2f = Vec2<float>;
@@ -149,7 +149,7 @@ struct Rgb {
   constexpr Rgb() = default;
   constexpr explicit Rgb(float grey) : r(grey), g(grey), b(grey) {}
   constexpr Rgb(float r_, float g_, float b_) : r(r_), g(g_), b(b_) {}
-  friend constexpr bool operator==(const Rgb&, const Rgb&) = default;
+  friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 
 constexpr Rgb operator+(const Rgb& a, const Rgb& b) { return {a.r + b.r, a.g + b.g, a.b + b.b}; }

@@ -1,0 +1,52 @@
+// A line as a shape sees it, and where the line crosses the shape: the common language of all closed forms.
+//
+// Closed forms are written once for several number types T (core/real.h): lanes of doubles inside packets, double for
+// single rays, binary128 where double leaves a doubt. What even that cannot decide goes to exact arithmetic.
+#pragma once
+
+#include <array>
+#include <type_traits>
+
+#include "core/real.h"
+#include "core/vec.h"
+#include "exact/surd.h"
+
+namespace alhazen {
+
+template <class T>
+using MaskOf = std::conditional_t<std::is_same_v<T, DoubleLanes>, LaneMask, bool>;
+
+/// The points origin + t direction in a shape's own space. Rounded: the exact line's components lie within the errors.
+template <class T>
+struct ObjectLine {
+  Vec3<T> origin, direction;
+  Vec3<T> origin_error, direction_error;  // absolute, >= 0
+};
+
+/// Which part of a shape's surface: 2 axis + side for the planes of a box (side 1: the upper), or the curved wall.
+inline constexpr int kWallFace = 6;
+
+/// Parameters at which a line crosses a surface, ascending, at most four. The exact parameter lies within `error`.
+/// A closed body is entered and left in turns. Where `doubtful`, the rest means nothing: ask a wider number type.
+template <class T>
+struct LineCrossings {
+  struct Crossing {
+    T t{}, error{};
+    T face{};  // an integer
+    MaskOf<T> present{false};
+  };
+  std::array<Crossing, 4> at;
+  MaskOf<T> doubtful{false};
+};
+
+/// One place where a line enters or leaves, exactly: what `exact_crossings` of a shape lists, ascending.
+struct ExactCrossing {
+  Surd t;
+  int face = kWallFace;
+};
+
+/// As accurate as a parameter must be to be rounded to float: errors of 2^-37 relative put the rounding on the wrong
+/// side once in 2^12 of the cases that are as bad as this, and those are rare.
+inline constexpr double kParameterAccuracy = 0x1p-37;
+
+}  // namespace alhazen
