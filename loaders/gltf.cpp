@@ -348,16 +348,22 @@ class Loader {
                                              "KHR_materials_ior",      "KHR_materials_transmission",
                                              "KHR_materials_specular", "ALHAZEN_materials_phong",
                                              "ALHAZEN_lights",         "ALHAZEN_shapes"};
-    const auto unknown = [&](const char* key, auto&& each) {
+    const auto each_in = [&](const char* key, auto&& each) {
       if (!root.has(key)) return;
       const Ref list = root[key].array();
-      for (size_t i = 0; i < list.size(); ++i)
-        if (!known.contains(list[i].string())) each(list[i]);
+      for (size_t i = 0; i < list.size(); ++i) each(list[i]);
     };
-    unknown("extensionsRequired",
-            [](const Ref& r) { r.fail("requires the extension " + r.string() + ", which is not supported"); });
+    std::set<std::string> required;
+    each_in("extensionsRequired", [&](const Ref& r) {
+      if (!known.contains(r.string())) r.fail("requires the extension " + r.string() + ", which is not supported");
+      required.insert(r.string());
+    });
     std::string ignored;
-    unknown("extensionsUsed", [&](const Ref& r) { ignored += (ignored.empty() ? "" : ", ") + r.string(); });
+    each_in("extensionsUsed", [&](const Ref& r) {
+      const std::string name = r.string();
+      out_.extensions.push_back({name, required.contains(name), known.contains(name)});
+      if (!known.contains(name)) ignored += (ignored.empty() ? "" : ", ") + name;
+    });
     if (!ignored.empty()) warn("extensions ignored: " + ignored);
   }
 

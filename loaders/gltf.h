@@ -16,9 +16,17 @@ struct EncodedImage {
   std::vector<uint8_t> bytes;  // empty: could not be read, a warning was given
 };
 
+/// An extension that the file names, and what became of it.
+struct Extension {
+  std::string name;
+  bool required = false;
+  bool read = false;  // otherwise ignored
+};
+
 struct LoadedScene {
   Scene scene;  // images still empty (width 0), as many as `encoded`
   std::vector<EncodedImage> encoded;
+  std::vector<Extension> extensions;  // of `extensionsUsed`
 };
 
 using WarningSink = std::function<void(const std::string&)>;

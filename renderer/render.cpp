@@ -74,6 +74,14 @@ struct CellWorker {
   RenderControl& control;
   RenderResult& result;
 
+  /// Fills the cell's pixels; false where it was stopped before they were finished, and left them empty.
+  [[nodiscard]] bool trace(const Cell& cell, WaveArena& arena) const {
+    if (control.stop) return false;
+    if (options.integrator == Integrator::whitted) return whitted(cell, arena);
+    signature(cell, arena);
+    return true;
+  }
+
   void signature(const Cell& cell, WaveArena& arena) const {
     push_camera_rays(camera, options, cell, 0, arena.pending);
     accelerated.intersect(arena.pending.rays, Coherence::coherent, arena.hits);
@@ -96,21 +104,24 @@ struct CellWorker {
     control.camera_rays += arena.pending.size();
   }
 
-  void whitted(const Cell& cell, WaveArena& arena) const {
+  [[nodiscard]] bool whitted(const Cell& cell, WaveArena& arena) const {
     std::array<Rgb, kCellSize * kCellSize> radiance;
+    std::array<float, kCellSize * kCellSize> background;
     std::array<Vec3d, kCellSize * kCellSize> sum{};
+    std::array<double, kCellSize * kCellSize> background_sum{};
     std::array<uint32_t, kCellSize * kCellSize> count{};
     for (int sample = 0; sample < options.samples; ++sample) {
-      if (control.stop) break;
-      radiance.fill(Rgb(0.0f));
+      if (control.stop) return false;
+      radiance.fill(Rgb(0.0f)), background.fill(0.0f);
       push_camera_rays(camera, options, cell, uint32_t(sample), arena.pending);
-      trace_whitted(scene, accelerated, options, arena, radiance.data());
+      trace_whitted(scene, accelerated, options, arena, radiance.data(), background.data());
       for (size_t p = 0; p < radiance.size(); ++p) {
         if (!is_finite(radiance[p])) {
           ++control.dropped_samples;
           continue;
         }
         sum[p] += Vec3d(radiance[p].r, radiance[p].g, radiance[p].b);
+        background_sum[p] += double(background[p]);
         ++count[p];
       }
     }
@@ -120,12 +131,13 @@ struct CellWorker {
         float* out = pixel_at(result.color, cell, p);
         const double scale = count[p] ? 1.0 / count[p] : 0;
         out[0] = float(sum[p].x * scale), out[1] = float(sum[p].y * scale), out[2] = float(sum[p].z * scale);
-        out[3] = count[p] ? 1.0f : 0.0f;
+        out[3] = count[p] ? std::max(0.0f, float(1 - background_sum[p] * scale)) : 0.0f;
       }
     control.camera_rays += arena.rays_by_kind[0] + arena.rays_by_kind[3];
     control.mirror_rays += arena.rays_by_kind[1], control.refracted_rays += arena.rays_by_kind[2];
     control.shadow_rays += arena.shadow_rays;
     arena.rays_by_kind = {}, arena.shadow_rays = 0;
+    return true;
   }
 
   template <class T>
@@ -163,22 +175,18 @@ RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, con
   tbb::task_arena threads(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   threads.execute([&] {
     tbb::parallel_for(0, tiles_x * tiles_y, [&](int tile) {
-      if (control.stop) return;
       const int cx0 = tile % tiles_x * side, cy0 = tile / tiles_x * side;
       for (int cy = cy0; cy < std::min(cy0 + side, cells_y); ++cy)
         for (int cx = cx0; cx < std::min(cx0 + side, cells_x); ++cx) {
-          if (control.stop) return;
           const Cell cell{cx * kCellSize, cy * kCellSize, std::min((cx + 1) * kCellSize, options.width),
                           std::min((cy + 1) * kCellSize, options.height)};
-          if (options.integrator == Integrator::signature)
-            worker.signature(cell, arenas.local());
-          else
-            worker.whitted(cell, arenas.local());
+          if (!worker.trace(cell, arenas.local())) return;
+          control.pixels_done += uint64_t(cell.x1 - cell.x0) * uint64_t(cell.y1 - cell.y0);
         }
       ++control.tiles_done;
     });
   });
-  result.complete = control.tiles_done == control.tiles;
+  result.complete = control.pixels_done == pixels;
   return result;
 }
 

@@ -17,7 +17,8 @@ struct RenderOptions {
   Integrator integrator = Integrator::whitted;
   int max_depth = 5;
   float min_weight = 0.001f;
-  int samples = 1;     // for each pixel
+  int samples = 1;           // for each pixel
+  bool transparent = false;  // where the view meets the background, alpha says so and its colour is left out
   int threads = 0;     // 0: all
   int tile_size = 64;  // pixels; rounded up to whole cells; never changes the picture
 };
@@ -26,10 +27,12 @@ struct RenderOptions {
 struct RenderControl {
   std::atomic<bool> stop{false};
   std::atomic<uint32_t> tiles_done{0}, tiles{0};
+  std::atomic<uint64_t> pixels_done{0};
   std::atomic<uint64_t> camera_rays{0}, shadow_rays{0}, mirror_rays{0}, refracted_rays{0};
   std::atomic<uint64_t> dropped_samples{0};  // not finite
 };
 
+/// Stopped early, every pixel is what the complete picture has there, or empty: 0 with alpha 0, or no node.
 struct RenderResult {
   ColorImage color;  // whitted: R, G, B, A
   IdImage ids;       // signature: node, primitive, material

@@ -27,12 +27,13 @@ struct Shading {
 class Whitted {
  public:
   Whitted(const Scene& scene, const AcceleratedScene& accelerated, const RenderOptions& options, WaveArena& arena,
-          Rgb* radiance)
+          Rgb* radiance, float* background)
       : scene_(scene),
         accelerated_(accelerated),
         options_(options),
         arena_(arena),
         radiance_(radiance),
+        background_(background),
         table_(texture_table(scene)) {}
 
   void run() {
@@ -67,8 +68,12 @@ class Whitted {
     const PathWave& wave = arena_.current;
     const HitWave& hits = arena_.hits;
     const uint32_t pixel = wave.pixel[i];
+    const bool view = wave.kind[i] == RayKind::camera || wave.kind[i] == RayKind::straight;
     if (hits.object[i] == kNone) {
-      radiance_[pixel] += wave.weight[i] * scene_.background;
+      if (options_.transparent && view)
+        background_[pixel] += wave.weight[i].r;  // a product of (1 - alpha): grey
+      else
+        radiance_[pixel] += wave.weight[i] * scene_.background;
       return;
     }
     const Rayf ray = wave.rays.get(i);
@@ -85,7 +90,7 @@ class Whitted {
     if (alpha < 1) {
       // A texel that is not there at all costs no depth: foliage is made of many of them.
       const uint16_t depth = alpha > 0 ? uint16_t(s.depth + 1) : s.depth;
-      spawn_at_depth(s, ray.direction, wave.weight[i] * (1 - alpha), RayKind::straight, depth);
+      spawn_at_depth(s, ray.direction, wave.weight[i] * (1 - alpha), view ? RayKind::straight : wave.kind[i], depth);
     }
     if (alpha == 0) return;
     radiance_[pixel] += s.weight * emission(material, table_, inputs);
@@ -214,14 +219,15 @@ class Whitted {
   const RenderOptions& options_;
   WaveArena& arena_;
   Rgb* radiance_;
+  float* background_;
   TextureTable table_;
 };
 
 }  // namespace
 
 void trace_whitted(const Scene& scene, const AcceleratedScene& accelerated, const RenderOptions& options,
-                   WaveArena& arena, Rgb* radiance) {
-  Whitted(scene, accelerated, options, arena, radiance).run();
+                   WaveArena& arena, Rgb* radiance, float* background) {
+  Whitted(scene, accelerated, options, arena, radiance, background).run();
 }
 
 }  // namespace alhazen

@@ -8,7 +8,7 @@
 
 namespace alhazen {
 
-/// What a ray is for. `straight` rays go on through a surface with alpha.
+/// What a ray is for. A `straight` ray continues the view of its camera ray through surfaces with alpha.
 enum class RayKind : uint8_t { camera, mirror, refracted, straight };
 
 /// A wave of rays on their way to pixels.
@@ -40,8 +40,9 @@ struct WaveArena {
 };
 
 /// Follows the rays in `arena.pending` to their ends and adds their light to `radiance`, one value for each pixel of
-/// the cell.
+/// the cell. With `options.transparent`, the background's colour is left out where the view meets it, and its share of
+/// the pixel is added to `background` instead.
 void trace_whitted(const Scene& scene, const AcceleratedScene& accelerated, const RenderOptions& options,
-                   WaveArena& arena, Rgb* radiance);
+                   WaveArena& arena, Rgb* radiance, float* background);
 
 }  // namespace alhazen

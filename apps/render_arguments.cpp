@@ -1,0 +1,171 @@
+#include "apps/render_arguments.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "apps/usage.h"
+
+namespace alhazen {
+namespace {
+
+constexpr int kLargestSide = 65536;
+
+void parse_size(const std::string& text, RenderOptions& options) {
+  int width = 0, height = 0, used = 0;
+  const auto valid = [](int side) { return side >= 1 && side <= kLargestSide; };
+  if (std::sscanf(text.c_str(), "%6dx%6d%n", &width, &height, &used) != 2 || size_t(used) != text.size() ||
+      !valid(width) || !valid(height))
+    throw CLI::ValidationError("--size", "'" + text + "' is not WIDTHxHEIGHT, both in 1 to 65536, like 1920x1080");
+  options.width = width, options.height = height;
+}
+
+Rgb parse_color(const std::string& option, const std::string& text) {
+  Rgb color;
+  int used = 0;
+  const int found = std::sscanf(text.c_str(), "%f,%f,%f%n", &color.r, &color.g, &color.b, &used);
+  const auto valid = [](float v) { return std::isfinite(v) && v >= 0; };
+  if (found != 3 || size_t(used) != text.size() || !valid(color.r) || !valid(color.g) || !valid(color.b))
+    throw CLI::ValidationError(option,
+                               "'" + text + "' is not three numbers R,G,B, finite and not negative, like 0.2,0.4,0.8");
+  return color;
+}
+
+void add_color(CLI::App& command, const std::string& name, std::optional<Rgb>& color, const std::string& description) {
+  command
+      .add_option_function<std::string>(
+          name, [&color, name](const std::string& text) { color = parse_color(name, text); }, description)
+      ->type_name("R,G,B");
+}
+
+CLI::Validator finite() {
+  return {[](std::string& text) {
+            return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : "'" + text + "' is not a finite number";
+          },
+          ""};
+}
+
+void add_picture_options(CLI::App& command, RenderArguments& arguments) {
+  RenderOptions& options = arguments.options;
+  command
+      .add_option_function<std::string>(
+          "--size", [&options](const std::string& text) { parse_size(text, options); }, "Size of the picture in pixels")
+      ->type_name("WxH")
+      ->default_str("1280x720");
+  command
+      .add_option("--camera", arguments.camera,
+                  "Index in the file's cameras, or a name; by default the scene's first, or one that shows it all")
+      ->type_name("INDEX|NAME");
+  add_choice<Integrator>(command, "--integrator", options.integrator,
+                         {{"whitted", Integrator::whitted}, {"signature", Integrator::signature}},
+                         "What a pixel shows: light, or which node, primitive and material are seen");
+  command.add_option("--spp", options.samples, "Samples per pixel; 1 takes the pixel's centre")
+      ->type_name("N")
+      ->check(CLI::Range(1, 65536).description(""))
+      ->capture_default_str();
+  command.add_option("--max-depth", options.max_depth, "How often a ray may be mirrored or refracted on its way")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1000).description(""))
+      ->capture_default_str();
+  command.add_option("--min-weight", options.min_weight, "A ray that counts less than this in its pixel is not traced")
+      ->type_name("X")
+      ->check(finite())
+      ->check(CLI::NonNegativeNumber.description(""))
+      ->capture_default_str();
+}
+
+void add_light_options(CLI::App& command, RenderArguments& arguments) {
+  add_choice<LightChoice>(
+      command, "--lights", arguments.lights,
+      {{"auto", LightChoice::automatic}, {"scene", LightChoice::scene}, {"studio", LightChoice::studio}},
+      "The scene's lights, or three studio lights about the camera; auto: studio where the scene has none");
+  add_color(command, "--background", arguments.background, "Linear colour behind everything, instead of the scene's");
+  add_color(command, "--ambient", arguments.ambient, "Linear ambient light, instead of the scene's");
+  command.add_option("--exposure", arguments.exposure, "Stops brighter (or darker): colours are multiplied by 2^STOPS")
+      ->type_name("STOPS")
+      ->check(finite())
+      ->default_str("0");
+}
+
+void add_file_options(CLI::App& command, RenderArguments& arguments) {
+  command.add_option("-o,--output", arguments.output, "Picture to write; its name chooses the format")
+      ->type_name("FILE")
+      ->required();
+  command.add_flag("--transparent", arguments.options.transparent,
+                   "Alpha instead of the background where the camera sees it (.exr .png .tif .webp .tga)");
+  command.add_flag("--half", arguments.encoding.half, ".exr: 16-bit floats instead of 32");
+  command
+      .add_option("--compression", arguments.encoding.compression,
+                  ".exr: zip (default), none, rle, zips, piz, and lossy pxr24, b44, b44a, dwaa, dwab; "
+                  ".tif: zip (default), none, lzw, packbits")
+      ->type_name("NAME");
+  command.add_option("--quality", arguments.encoding.quality, ".jpg .webp: 1 to 100")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100).description(""))
+      ->default_str("95");
+}
+
+void add_run_options(CLI::App& command, RenderArguments& arguments) {
+  command.add_option("--threads", arguments.options.threads, "Threads; 0: one for each processor")
+      ->type_name("N")
+      ->check(CLI::Range(0, 4096).description(""))
+      ->capture_default_str();
+  command.add_option("--tile-size", arguments.options.tile_size, "Side of a tile in pixels; never changes the picture")
+      ->type_name("N")
+      ->check(CLI::Range(1, kLargestSide).description(""))
+      ->capture_default_str();
+  add_choice<ProgressStyle>(command, "--progress", arguments.progress,
+                            {{"auto", ProgressStyle::automatic},
+                             {"plain", ProgressStyle::plain},
+                             {"json", ProgressStyle::json},
+                             {"none", ProgressStyle::none}},
+                            "auto: one line on a terminal, plain lines elsewhere; json: an object a line on standard "
+                            "output");
+  command.add_flag("--quiet", arguments.quiet, "Only warnings and errors");
+}
+
+std::string number(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", v);
+  return text;
+}
+
+std::string number(const Rgb& c) { return number(double(c.r)) + "," + number(double(c.g)) + "," + number(double(c.b)); }
+
+}  // namespace
+
+void add_render_options(CLI::App& command, RenderArguments& arguments) {
+  command.add_option("SCENE", arguments.scene, "glTF 2.0 file (.gltf or .glb)")->type_name("")->required();
+  const auto group = [&](const char* name) { command.option_defaults()->group(name); };
+  group("File"), add_file_options(command, arguments);
+  group("Picture"), add_picture_options(command, arguments);
+  group("Light"), add_light_options(command, arguments);
+  group("Run"), add_run_options(command, arguments);
+}
+
+void check_arguments(const RenderArguments& arguments) {
+  check_encoding(arguments.output, arguments.encoding);
+  const bool ids = arguments.options.integrator == Integrator::signature;
+  if (ids && arguments.encoding.half) throw UsageError("--half: a signature holds 32-bit integers");
+  if (!arguments.options.transparent) return;
+  if (ids) throw UsageError("--transparent: a signature has no alpha");
+  if (!image_format(arguments.output).alpha)
+    throw UsageError("--transparent: '" + arguments.output + "' cannot hold alpha; .exr, .png, .tif and .webp can");
+}
+
+std::string picture_options(const RenderArguments& arguments) {
+  const RenderOptions& options = arguments.options;
+  std::string text = "--size " + std::to_string(options.width) + "x" + std::to_string(options.height);
+  if (!arguments.camera.empty()) text += " --camera '" + arguments.camera + "'";
+  text += options.integrator == Integrator::signature ? " --integrator signature" : " --integrator whitted";
+  text += " --spp " + std::to_string(options.samples) + " --max-depth " + std::to_string(options.max_depth) +
+          " --min-weight " + number(double(options.min_weight));
+  constexpr const char* kLights[] = {"auto", "scene", "studio"};
+  text += std::string(" --lights ") + kLights[size_t(arguments.lights)];
+  if (arguments.background) text += " --background " + number(*arguments.background);
+  if (arguments.ambient) text += " --ambient " + number(*arguments.ambient);
+  text += " --exposure " + number(double(arguments.exposure));
+  if (options.transparent) text += " --transparent";
+  return text;
+}
+
+}  // namespace alhazen

@@ -1,0 +1,38 @@
+// The options of `alhazen render`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "apps/progress.h"
+#include "core/vec.h"
+#include "loaders/image_file.h"
+#include "renderer/render.h"
+
+namespace alhazen {
+
+enum class LightChoice : uint8_t { automatic, scene, studio };
+
+struct RenderArguments {
+  std::string scene, output;
+  std::string camera;  // index or name; empty: the scene's first
+  RenderOptions options;
+  LightChoice lights = LightChoice::automatic;
+  std::optional<Rgb> background, ambient;
+  float exposure = 0;  // stops
+  ImageEncoding encoding;
+  ProgressStyle progress = ProgressStyle::automatic;
+  bool quiet = false;
+};
+
+/// Fills `arguments`, which must live as long as `command`, when the command line is parsed.
+void add_render_options(CLI::App& command, RenderArguments& arguments);
+
+/// Throws UsageError for options that do not go together.
+void check_arguments(const RenderArguments& arguments);
+
+/// The options that decide on the pixels, defaults too, as a command line would give them.
+[[nodiscard]] std::string picture_options(const RenderArguments& arguments);
+
+}  // namespace alhazen

@@ -1,0 +1,217 @@
+#include "apps/render_command.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_invoke.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "accel/accelerated_scene.h"
+#include "apps/exposure.h"
+#include "apps/interruption.h"
+#include "apps/picture_metadata.h"
+#include "apps/render_arguments.h"
+#include "apps/suggestion.h"
+#include "core/error.h"
+#include "loaders/gltf.h"
+#include "loaders/image_decode.h"
+
+namespace alhazen {
+namespace {
+
+constexpr double kClippedShareToMention = 0.1;
+
+RenderControl g_control;  // lives as long as the program, as the signal handler wants
+
+void print_warning(const std::string& text) { std::fprintf(stderr, "warning: %s\n", text.c_str()); }
+
+/// Seconds since the last call, or since it was made.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+struct PhaseSeconds {
+  double load = 0, build = 0, render = 0, write = 0;
+};
+
+Camera pick_camera(const Scene& scene, const std::string& wanted, double aspect) {
+  if (wanted.empty())
+    return scene.cameras.empty() ? framing_camera(world_bounds(scene.geometry), aspect) : scene.cameras[0];
+  for (size_t i = 0; i < scene.cameras.size(); ++i)
+    if (std::to_string(scene.camera_index[i]) == wanted) return scene.cameras[i];
+  std::vector<std::string> names, descriptions;
+  for (size_t i = 0; i < scene.cameras.size(); ++i) {
+    const std::string& name = scene.cameras[i].name;
+    if (name == wanted) return scene.cameras[i];
+    if (!name.empty()) names.push_back(name);
+    descriptions.push_back(std::to_string(scene.camera_index[i]) + (name.empty() ? "" : " '" + name + "'"));
+  }
+  throw UsageError("--camera: there is no camera '" + wanted + "'; the scene has " +
+                   (descriptions.empty() ? "none" : joined(descriptions)) + did_you_mean(wanted, names));
+}
+
+void set_up_lights(Scene& scene, const Camera& camera, const RenderArguments& arguments) {
+  if (arguments.ambient) scene.ambient = *arguments.ambient, scene.has_ambient = true;
+  if (arguments.background) scene.background = *arguments.background, scene.has_background = true;
+  const bool unlit = scene.lights.empty() && !scene.has_ambient;
+  if (arguments.lights == LightChoice::studio) scene.lights.clear();
+  if (arguments.lights == LightChoice::studio || (arguments.lights == LightChoice::automatic && unlit))
+    add_studio_lights(scene, camera);
+}
+
+/// Builds the hierarchies while the textures are decoded.
+std::unique_ptr<AcceleratedScene> build(LoadedScene& loaded, const SurfaceFilter& filter, int threads) {
+  std::unique_ptr<AcceleratedScene> accelerated;
+  std::vector<TextureImage> images;
+  tbb::parallel_invoke(
+      [&] {
+        accelerated =
+            std::make_unique<AcceleratedScene>(loaded.scene.geometry, filter, BuildOptions{.threads = threads});
+      },
+      [&] { images = decode_images(loaded.encoded, print_warning); });
+  loaded.scene.images = std::move(images);
+  loaded.encoded = {};
+  return accelerated;
+}
+
+RenderResult render_with_progress(const RenderArguments& arguments, const Scene& scene,
+                                  const AcceleratedScene& accelerated, const Camera& camera) {
+  const RenderOptions& options = arguments.options;
+  const std::string title = std::filesystem::path(arguments.scene).stem().string() + " " +
+                            std::to_string(options.width) + "x" + std::to_string(options.height) + " " +
+                            std::to_string(options.samples) + " spp";
+  const ProgressReporter reporter(arguments.quiet ? ProgressStyle::none : arguments.progress, title,
+                                  uint64_t(options.width) * uint64_t(options.height), g_control);
+  stop_on_signal(g_control.stop);
+  return render(scene, accelerated, camera, options, g_control);
+}
+
+void mention_clipping(const ColorImage& image, const RenderArguments& arguments) {
+  if (arguments.quiet || image_format(arguments.output).linear) return;
+  const Clipping clipped = clipping(image);
+  if (clipped.share < kClippedShareToMention) return;
+  std::fprintf(stderr, "note: %.0f %% of the picture is clipped to white; --exposure %g keeps nearly all of it\n",
+               100 * clipped.share, double(arguments.exposure + clipped.stops));
+}
+
+void write(const RenderArguments& arguments, RenderResult& result, double render_seconds) {
+  const Metadata metadata = picture_metadata(arguments, g_control, result.complete, render_seconds);
+  if (arguments.options.integrator == Integrator::signature)
+    return write_image(arguments.output, result.ids, arguments.encoding, metadata);
+  expose(result.color, arguments.exposure);
+  write_image(arguments.output, result.color, arguments.encoding, metadata);
+  mention_clipping(result.color, arguments);
+}
+
+/// "5184", "98.3 M"
+std::string count_text(uint64_t count) {
+  char text[32];
+  if (count < 1000000) return std::to_string(count);
+  std::snprintf(text, sizeof text, "%.1f M", 1e-6 * double(count));
+  return text;
+}
+
+std::string facts_text(const std::string& outcome, const PhaseSeconds& seconds, int threads) {
+  const RayCounts rays = ray_counts(g_control);
+  char times[128], speed[32];
+  std::snprintf(times, sizeof times, ": load %.2f s, build %.2f s, render %.2f s, write %.2f s; ", seconds.load,
+                seconds.build, seconds.render, seconds.write);
+  std::snprintf(speed, sizeof speed, "%.1f Mray/s", 1e-6 * double(rays.all()) / std::max(seconds.render, 1e-9));
+  return outcome + times + count_text(rays.all()) + " rays (" + count_text(rays.camera) + " camera, " +
+         count_text(rays.mirror) + " mirror, " + count_text(rays.refracted) + " refracted, " + count_text(rays.shadow) +
+         " shadow), " + speed + "; " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+}
+
+std::string facts_json(const RenderArguments& arguments, bool complete, const PhaseSeconds& seconds, int threads) {
+  const RayCounts rays = ray_counts(g_control);
+  nlohmann::ordered_json json;
+  json["event"] = complete ? "done" : "interrupted";
+  json["output"] = arguments.output;
+  json["pixels"] = g_control.pixels_done.load();
+  json["seconds"] = {
+      {"load", seconds.load}, {"build", seconds.build}, {"render", seconds.render}, {"write", seconds.write}};
+  json["rays"] = {
+      {"camera", rays.camera}, {"mirror", rays.mirror}, {"refracted", rays.refracted}, {"shadow", rays.shadow}};
+  json["threads"] = threads;
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+void print_facts(const RenderArguments& arguments, bool complete, const PhaseSeconds& seconds, int threads) {
+  if (arguments.quiet) return;
+  const std::string outcome = complete ? "done"
+                                       : "interrupted, " + std::to_string(g_control.tiles_done) + " of " +
+                                             std::to_string(g_control.tiles) + " tiles saved as partial";
+  const bool json = arguments.progress == ProgressStyle::json;
+  std::printf(
+      "%s\n",
+      (json ? facts_json(arguments, complete, seconds, threads) : facts_text(outcome, seconds, threads)).c_str());
+}
+
+int run_render(const RenderArguments& arguments) {
+  const RenderOptions& options = arguments.options;
+  check_arguments(arguments);
+  check_writable(arguments.output, options.width, options.height);
+  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
+  PhaseSeconds seconds;
+  Stopwatch watch;
+
+  LoadedScene loaded = load_gltf(arguments.scene, print_warning);
+  Scene& scene = loaded.scene;
+  bake_single_instances(scene.geometry);
+  const Camera camera = pick_camera(scene, arguments.camera, double(options.width) / options.height);
+  set_up_lights(scene, camera, arguments);
+  seconds.load = watch.lap();
+
+  std::vector<Opacity> opacity;
+  const SurfaceFilter filter = surface_filter(scene, opacity);
+  const auto accelerated = build(loaded, filter, threads);
+  seconds.build = watch.lap();
+
+  RenderResult result = render_with_progress(arguments, scene, *accelerated, camera);
+  seconds.render = watch.lap();
+  if (g_control.dropped_samples > 0)
+    print_warning(std::to_string(g_control.dropped_samples) + " samples were not finite and left out");
+  if (g_control.pixels_done == 0) {
+    std::fprintf(stderr, "interrupted before any tile was finished; nothing is written\n");
+    return 128 + caught_signal();
+  }
+
+  write(arguments, result, seconds.render);
+  seconds.write = watch.lap();
+  print_facts(arguments, result.complete, seconds, threads);
+  return caught_signal() != 0 ? 128 + caught_signal() : int(ExitStatus::done);
+}
+
+}  // namespace
+
+Command add_render_command(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("render", "Render a scene to a picture")->group("Commands");
+  const auto arguments = std::make_shared<RenderArguments>();
+  add_render_options(*command, *arguments);
+  command->footer(
+      "Formats: .exr and .hdr hold linear floats; .png .jpg .tif .webp .tga .bmp .ppm and others 8 bits, sRGB, "
+      "clamped.\n"
+      "Alpha: colour is premultiplied in .exr and .tif, straight elsewhere.\n"
+      "Ctrl-C saves what is finished; a second one does not wait for it.\n"
+      "Exit status: 0 done, 2 wrong usage, 3 bad scene, 4 cannot write, 130 or 143 interrupted, 1 anything else.\n"
+      "\n"
+      "Examples:\n"
+      "  alhazen render scene.gltf -o scene.png\n"
+      "  alhazen render scene.glb -o beauty.exr --size 1920x1080 --spp 16 --transparent --half\n"
+      "  alhazen render scene.glb -o ids.exr --integrator signature");
+  return {command, [arguments] { return run_render(*arguments); }};
+}
+
+}  // namespace alhazen
