@@ -25,19 +25,28 @@ expect 0 --version
 expect 0 render --help
 expect 2 render "$scene" --no-such-option
 expect 2 render "$scene" -o "$work/a.exr" --camera nobody
+expect 2 render "$scene" -o "$work/a.exr" --integrator whited
+expect 2 render "$scene" -o "$work/a.jpg" --transparent
+expect 2 render "$scene" -o "$work/a.png" --half
+expect 2 rendr "$scene"
+expect 2
 expect 3 render "$work/absent.gltf" -o "$work/a.png"
 expect 3 render "$work/truncated.gltf" -o "$work/a.png"
 expect 3 render "$work/required.gltf" -o "$work/a.png"
 expect 4 render "$scene" -o "$work/absent/a.png"
-# A signal stops at the next cell and saves what is finished.
+expect 4 render "$scene" -o "$work"
+expect 4 render "$scene" -o "$work/a.unheard"
+expect 4 render "$scene" -o "$work/a.jpg" --size 65536x1
+# A signal stops at the next cell and saves what is finished: sent as soon as something is.
 for signal in INT:130 TERM:143; do
-  "$program" render "$scene" -o "$work/partial.exr" --spp 4096 --quiet >"$work/log" 2>&1 &
-  sleep 1
+  "$program" render "$scene" -o "$work/partial.exr" --size 2048x2048 --spp 64 --progress json >"$work/log" 2>&1 &
+  until grep -q '"fraction":[0-9.e-]*[1-9]' "$work/log" || ! kill -0 $! 2>/dev/null; do sleep 0.1; done
   kill -"${signal%:*}" $!
   wait $!
   got=$?
-  if [ "$got" != "${signal#*:}" ] || [ ! -s "$work/partial.exr" ]; then
+  if [ "$got" != "${signal#*:}" ] || [ ! -s "$work/partial.exr" ] || ! grep -q '"event":"interrupted"' "$work/log"; then
     echo "SIG${signal%:*}: status $got, or no picture"
+    cat "$work/log"
     failed=1
   fi
   rm -f "$work/partial.exr"
