@@ -16,17 +16,13 @@ constexpr size_t kEdgesOfOneStrip = 64;  // so few are faster looked at than loo
 
 using ExactVec = Vec3<Rational>;
 
-ExactVec operator-(const ExactVec& a, const ExactVec& b) {
-  return {Rational(a.x - b.x), Rational(a.y - b.y), Rational(a.z - b.z)};
+using Integer = mpz_class;
+using IntegerVec = Vec3<Integer>;
+
+template <class N>
+bool is_zero(const Vec3<N>& a) {
+  return sgn(a.x) == 0 && sgn(a.y) == 0 && sgn(a.z) == 0;
 }
-ExactVec operator+(const ExactVec& a, const ExactVec& b) {
-  return {Rational(a.x + b.x), Rational(a.y + b.y), Rational(a.z + b.z)};
-}
-ExactVec cross(const ExactVec& a, const ExactVec& b) {
-  return {Rational(a.y * b.z - a.z * b.y), Rational(a.z * b.x - a.x * b.z), Rational(a.x * b.y - a.y * b.x)};
-}
-Rational dot(const ExactVec& a, const ExactVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-bool is_zero(const ExactVec& a) { return sgn(a.x) == 0 && sgn(a.y) == 0 && sgn(a.z) == 0; }
 
 /// `v` in the cyclic order that puts `last_axis` last, and back.
 template <class T>
@@ -42,27 +38,54 @@ Vec3<T> from_plane_axes(const Vec3<T>& v, int last_axis) {
 
 using Loops = std::vector<std::vector<Vec3d>>;
 
+/// x 2^bits as it is, a number without places after the point.
+Integer scaled(double x, int bits) {
+  int exponent = 0;
+  const Integer mantissa(std::ldexp(std::frexp(x, &exponent), 53));
+  const int shift = exponent - 53 + bits;
+  return shift >= 0 ? Integer(mantissa << mp_bitcnt_t(shift)) : Integer(mantissa >> mp_bitcnt_t(-shift));
+}
+
+/// Loops as integers, in units of 2^-bits: exact, and much faster than rationals.
+struct IntegerLoops {
+  std::vector<std::vector<IntegerVec>> loops;
+  int bits = 0;
+
+  explicit IntegerLoops(const Loops& rounded) : loops(rounded.size()) {
+    const auto places = [](double x) { return x == 0 ? 0 : 52 - std::ilogb(x); };
+    for (const auto& loop : rounded)
+      for (const Vec3d& p : loop) bits = std::max({bits, places(p.x), places(p.y), places(p.z)});
+    for (size_t i = 0; i < loops.size(); ++i)
+      for (const Vec3d& p : rounded[i]) loops[i].push_back({scaled(p.x, bits), scaled(p.y, bits), scaled(p.z, bits)});
+  }
+
+  [[nodiscard]] Rational from_units(const Rational& in_units) const {
+    Rational out = in_units;
+    mpq_div_2exp(out.get_mpq_t(), out.get_mpq_t(), mp_bitcnt_t(bits));
+    return out;
+  }
+};
+
 /// That the loop has three points which are not on one line.
-void check_loop(const std::vector<Vec3d>& loop, size_t index) {
-  const auto differs = [&](const Vec3d& p) { return !(p == loop.front()); };
+void check_loop(const std::vector<IntegerVec>& loop, size_t index) {
+  const auto differs = [&](const IntegerVec& p) { return !(p == loop.front()); };
   const auto second = std::find_if(loop.begin(), loop.end(), differs);
-  const auto third = std::find_if(second, loop.end(), [&](const Vec3d& p) { return differs(p) && !(p == *second); });
+  const auto third = std::find_if(second, loop.end(), [&](const auto& p) { return differs(p) && !(p == *second); });
   if (third == loop.end()) {
     const int distinct = loop.empty() ? 0 : second == loop.end() ? 1 : 2;
     throw PolygonError(index, "expected 3 or more distinct points, found " + std::to_string(distinct));
   }
-  const ExactVec origin = exact(loop.front()), along = exact(*second) - origin;
-  if (std::all_of(third, loop.end(), [&](const Vec3d& p) { return is_zero(cross(along, exact(p) - origin)); }))
+  const IntegerVec origin = loop.front(), along = *second - origin;
+  if (std::all_of(third, loop.end(), [&](const IntegerVec& p) { return is_zero(cross(along, p - origin)); }))
     throw PolygonError(index, "expected points that enclose an area, found all of them on one line");
 }
 
 /// Twice the loop's vector area.
-ExactVec newell_normal(const std::vector<Vec3d>& loop) {
-  const ExactVec origin = exact(loop.front());
-  ExactVec normal, previous = exact(loop.back()) - origin;
-  for (const Vec3d& p : loop) {
-    const ExactVec next = exact(p) - origin;
-    normal = normal + cross(previous, next);
+IntegerVec newell_normal(const std::vector<IntegerVec>& loop) {
+  IntegerVec normal, previous = loop.back() - loop.front();
+  for (const IntegerVec& p : loop) {
+    const IntegerVec next = p - loop.front();
+    normal += cross(previous, next);
     previous = next;
   }
   if (is_zero(normal))
@@ -70,16 +93,22 @@ ExactVec newell_normal(const std::vector<Vec3d>& loop) {
   return normal;
 }
 
-ExactVec mean(const std::vector<Vec3d>& points) {
-  ExactVec sum;
-  for (const Vec3d& p : points) sum = sum + exact(p);
-  const Rational n(static_cast<unsigned long>(points.size()));
-  return {Rational(sum.x / n), Rational(sum.y / n), Rational(sum.z / n)};
+IntegerVec sum(const std::vector<IntegerVec>& points) {
+  IntegerVec total;
+  for (const IntegerVec& p : points) total += p;
+  return total;
+}
+
+/// The mean of the first loop's vertices.
+ExactVec mean_point(const IntegerLoops& exactly) {
+  const IntegerVec total = sum(exactly.loops[0]);
+  const auto mean = [&](const Integer& x) { return exactly.from_units(Rational(x) / exactly.loops[0].size()); };
+  return {mean(total.x), mean(total.y), mean(total.z)};
 }
 
 /// The first of the axes along which `normal` is largest.
-int largest_axis(const ExactVec& normal) {
-  const Rational x = abs(normal.x), y = abs(normal.y), z = abs(normal.z);
+int largest_axis(const IntegerVec& normal) {
+  const Integer x = abs(normal.x), y = abs(normal.y), z = abs(normal.z);
   return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
 }
 
@@ -91,30 +120,37 @@ Rational longest_side(const Loops& loops) {
   return std::max(size.x, std::max(size.y, size.z));
 }
 
-/// That no vertex is too far from the plane through `point`.
-void check_planar(const Loops& loops, const ExactVec& point, const ExactVec& normal) {
-  const Rational planarity(1, 10000), reach = longest_side(loops) * planarity;
-  const Rational limit = reach * reach * dot(normal, normal);  // of the square of distance times |normal|
-  for (size_t i = 0; i < loops.size(); ++i)
-    for (const Vec3d& p : loops[i]) {
-      const Rational height = dot(normal, exact(p) - point), squared = height * height;
-      if (squared <= limit) continue;
-      const double distance = std::sqrt(double(to_quad(Surd(Rational(squared / dot(normal, normal))))));
+/// That no vertex is too far from the plane through the mean of the first loop's vertices.
+void check_planar(const Loops& rounded, const IntegerLoops& exactly, const IntegerVec& normal) {
+  const Rational planarity(1, 10000), reach = longest_side(rounded) * planarity;
+  const Integer count = exactly.loops[0].size(), squared_normal = dot(normal, normal);
+  const Integer mean_height = dot(normal, sum(exactly.loops[0]));  // times count
+  // Of a height times |normal|, times count, in units.
+  Rational limit = reach * reach * squared_normal * count * count;
+  mpq_mul_2exp(limit.get_mpq_t(), limit.get_mpq_t(), 2 * mp_bitcnt_t(exactly.bits));
+  const Integer squared_limit = limit.get_num() / limit.get_den();
+  for (size_t i = 0; i < rounded.size(); ++i)
+    for (size_t k = 0; k < rounded[i].size(); ++k) {
+      const Integer height = dot(normal, exactly.loops[i][k]) * count - mean_height, squared = height * height;
+      if (squared <= squared_limit) continue;
+      const Rational ratio = Rational(squared) / limit;
+      const Vec3d& p = rounded[i][k];
       std::ostringstream reason;
       reason << "expected vertices within " << planarity.get_d() << " of the longest side, " << reach.get_d()
-             << ", from the plane, found [" << p.x << ", " << p.y << ", " << p.z << "] at a distance of " << distance;
+             << ", from the plane, found [" << p.x << ", " << p.y << ", " << p.z << "] at a distance of "
+             << reach.get_d() * std::sqrt(ratio.get_d());
       throw PolygonError(i, reason.str());
     }
 }
 
-void set_plane(Polygon& polygon, const ExactVec& point, const ExactVec& normal) {
+void set_plane(Polygon& polygon, const ExactVec& point, const IntegerVec& normal) {
   const int axis = largest_axis(normal);
-  const ExactVec n = to_plane_axes(normal, axis);
+  const IntegerVec n = to_plane_axes(normal, axis);
   polygon.dropped_axis = axis;
   polygon.center = {point.x.get_d(), point.y.get_d(), point.z.get_d()};
   const ExactVec p = to_plane_axes(point - exact(polygon.center), axis);
   HeightPlane<Rational>& plane = polygon.exact_plane;
-  plane = {Rational(-n.x / n.z), Rational(-n.y / n.z), Rational()};
+  plane = {Rational(-n.x) / n.z, Rational(-n.y) / n.z, Rational()};
   plane.offset = p.z - plane.slope_x * p.x - plane.slope_y * p.y;
   polygon.quad_plane = {to_quad(plane.slope_x), to_quad(plane.slope_y), to_quad(plane.offset)};
   const HeightPlane<Quad>& quad = polygon.quad_plane;
@@ -378,12 +414,13 @@ bool exactly_inside(const Polygon& polygon, const Rational& x, const Rational& y
 
 Polygon make_polygon(const Loops& loops) {
   if (loops.empty()) throw PolygonError(0, "expected one or more loops, found none");
-  for (size_t i = 0; i < loops.size(); ++i) check_loop(loops[i], i);
-  const ExactVec normal = newell_normal(loops.front()), point = mean(loops.front());
-  check_planar(loops, point, normal);
+  const IntegerLoops exactly(loops);
+  for (size_t i = 0; i < loops.size(); ++i) check_loop(exactly.loops[i], i);
+  const IntegerVec normal = newell_normal(exactly.loops[0]);
+  check_planar(loops, exactly, normal);
   Polygon polygon;
   for (const auto& loop : loops) polygon.vertices.insert(polygon.vertices.end(), loop.begin(), loop.end());
-  set_plane(polygon, point, normal);
+  set_plane(polygon, mean_point(exactly), normal);
   const std::vector<Polygon::Edge> edges = edges_of(polygon, loops);
   for (const auto& edge : edges) polygon.radius = std::max({polygon.radius, std::abs(edge.x0), std::abs(edge.y0)});
   polygon.radius = std::nextafter(polygon.radius, HUGE_VAL);  // the exact coordinates may be larger than the rounded

@@ -69,19 +69,12 @@ EdgeSides<T> edge_sides(const EdgeVectors<ScalarOf<T>>& edges, const SeenVertice
 /// The side on which the line passes the edge from p to q, seen along the line, ties broken by moving the line. Zero
 /// only for edges parallel to the line.
 int exact_side(const ExactLine& line, const Vec3<Rational>& p, const Vec3<Rational>& q) {
-  const auto minus = [](const Vec3<Rational>& v, const Vec3<Rational>& w) {
-    return Vec3<Rational>{Rational(v.x - w.x), Rational(v.y - w.y), Rational(v.z - w.z)};
-  };
-  const auto times = [](const Vec3<Rational>& v, const Vec3<Rational>& w) {
-    return Vec3<Rational>{Rational(v.y * w.z - v.z * w.y), Rational(v.z * w.x - v.x * w.z),
-                          Rational(v.x * w.y - v.y * w.x)};
-  };
   // direction · ((p - origin) × edge) = (direction × (p - origin)) · edge; its gradient by the origin is
   // direction × edge.
-  const Vec3<Rational> edge = minus(q, p), moment = times(line.direction, minus(p, line.origin));
-  const int side = sgn(Rational(moment.x * edge.x + moment.y * edge.y + moment.z * edge.z));
+  const Vec3<Rational> edge = q - p, moment = cross(line.direction, p - line.origin);
+  const int side = sgn(dot(moment, edge));
   if (side != 0) return side;
-  const Vec3<Rational> gradient = times(line.direction, edge);
+  const Vec3<Rational> gradient = cross(line.direction, edge);
   if (sgn(gradient.x) != 0) return sgn(gradient.x);
   return sgn(gradient.y) != 0 ? sgn(gradient.y) : sgn(gradient.z);
 }
@@ -145,14 +138,12 @@ template LineCrossings<Quad> crossings(const Triangle&, const ObjectLine<Quad>&)
 
 std::vector<ExactCrossing> exact_crossings(const Triangle& triangle, const ExactLine& line) {
   const Vec3<Rational> a = exact(triangle.a), b = exact(triangle.b), c = exact(triangle.c);
-  const Rational abx = b.x - a.x, aby = b.y - a.y, abz = b.z - a.z, acx = c.x - a.x, acy = c.y - a.y, acz = c.z - a.z;
-  const Rational nx = aby * acz - abz * acy, ny = abz * acx - abx * acz, nz = abx * acy - aby * acx;
-  const Rational speed = nx * line.direction.x + ny * line.direction.y + nz * line.direction.z;
+  const Vec3<Rational> n = cross(b - a, c - a);
+  const Rational speed = dot(n, line.direction);
   if (sgn(speed) == 0) return {};
   const int side = exact_side(line, a, b);
   if (exact_side(line, b, c) != side || exact_side(line, c, a) != side) return {};
-  const Rational distance = nx * (a.x - line.origin.x) + ny * (a.y - line.origin.y) + nz * (a.z - line.origin.z);
-  return {{Surd(Rational(distance / speed))}};
+  return {{Surd(Rational(dot(n, a - line.origin) / speed))}};
 }
 
 }  // namespace alhazen
