@@ -17,6 +17,7 @@
 #include "apps/render_arguments.h"
 #include "apps/suggestion.h"
 #include "core/error.h"
+#include "core/fork_join.h"
 #include "loaders/gltf.h"
 #include "loaders/image_decode.h"
 
@@ -74,12 +75,13 @@ void set_up_lights(Scene& scene, const Camera& camera, const RenderArguments& ar
 std::unique_ptr<AcceleratedScene> build(LoadedScene& loaded, const SurfaceFilter& filter, int threads) {
   std::unique_ptr<AcceleratedScene> accelerated;
   std::vector<TextureImage> images;
-  tbb::parallel_invoke(
-      [&] {
-        accelerated =
-            std::make_unique<AcceleratedScene>(loaded.scene.geometry, filter, BuildOptions{.threads = threads});
-      },
-      [&] { images = decode_images(loaded.encoded, print_warning); });
+  {
+    const ForkJoin order;
+    tbb::parallel_invoke(order.task([&] {
+      accelerated = std::make_unique<AcceleratedScene>(loaded.scene.geometry, filter, BuildOptions{.threads = threads});
+    }),
+                         order.task([&] { images = decode_images(loaded.encoded, print_warning); }));
+  }
   loaded.scene.images = std::move(images);
   loaded.encoded = {};
   return accelerated;

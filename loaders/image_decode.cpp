@@ -12,6 +12,8 @@
 #include <string_view>
 #include <utility>
 
+#include "core/fork_join.h"
+
 namespace alhazen {
 namespace {
 
@@ -65,7 +67,8 @@ TextureImage decode(const std::vector<uint8_t>& bytes) {
 std::vector<TextureImage> decode_images(const std::vector<EncodedImage>& encoded, const WarningSink& warn) {
   std::vector<TextureImage> images(encoded.size());
   std::mutex warning;
-  tbb::parallel_for(size_t(0), encoded.size(), [&](size_t i) {
+  const ForkJoin order;
+  tbb::parallel_for(size_t(0), encoded.size(), order.task([&](size_t i) {
     if (encoded[i].bytes.empty()) return;
     const auto failed = [&](const std::string& reason) {
       const std::lock_guard lock(warning);
@@ -80,7 +83,7 @@ std::vector<TextureImage> decode_images(const std::vector<EncodedImage>& encoded
     } catch (...) {
       failed("unknown error");
     }
-  });
+  }));
   return images;
 }
 

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "core/error.h"
+#include "core/fork_join.h"
 #include "loaders/part_file.h"
 #include "materials/texture.h"
 
@@ -127,9 +128,10 @@ std::array<uint8_t, 3> node_color(uint32_t node) {
 /// f(pixel in, index of the pixel), rows in parallel.
 template <class T, class F>
 void for_each_pixel(const PixelBuffer<T>& image, F f) {
-  tbb::parallel_for(0, image.height, [&](int y) {
+  const ForkJoin order;
+  tbb::parallel_for(0, image.height, order.task([&](int y) {
     for (int x = 0; x < image.width; ++x) f(image.at(x, y), size_t(y) * size_t(image.width) + size_t(x));
-  });
+  }));
 }
 
 /// R, G, B, A of one pixel as sRGB bytes: straight colour, or the encoded colour times alpha.

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/fork_join.h"
 #include "core/sampling.h"
 #include "renderer/surface.h"
 #include "renderer/whitted.h"
@@ -174,7 +175,8 @@ RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, con
   tbb::enumerable_thread_specific<WaveArena> arenas;
   tbb::task_arena threads(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   threads.execute([&] {
-    tbb::parallel_for(0, tiles_x * tiles_y, [&](int tile) {
+    const ForkJoin order;
+    tbb::parallel_for(0, tiles_x * tiles_y, order.task([&](int tile) {
       const int cx0 = tile % tiles_x * side, cy0 = tile / tiles_x * side;
       for (int cy = cy0; cy < std::min(cy0 + side, cells_y); ++cy)
         for (int cx = cx0; cx < std::min(cx0 + side, cells_x); ++cx) {
@@ -184,7 +186,7 @@ RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, con
           control.pixels_done += uint64_t(cell.x1 - cell.x0) * uint64_t(cell.y1 - cell.y0);
         }
       ++control.tiles_done;
-    });
+    }));
   });
   result.complete = control.pixels_done == pixels;
   return result;
