@@ -1,5 +1,6 @@
 #include "apps/render_arguments.h"
 
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -123,13 +124,13 @@ void add_run_options(CLI::App& command, RenderArguments& arguments) {
   command.add_flag("--quiet", arguments.quiet, "Only warnings and errors");
 }
 
-std::string number(double v) {
+/// The shortest text that reads back as the same number.
+std::string number(float v) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.9g", v);
-  return text;
+  return {text, std::to_chars(text, text + sizeof text, v).ptr};
 }
 
-std::string number(const Rgb& c) { return number(double(c.r)) + "," + number(double(c.g)) + "," + number(double(c.b)); }
+std::string number(const Rgb& c) { return number(c.r) + "," + number(c.g) + "," + number(c.b); }
 
 }  // namespace
 
@@ -158,12 +159,12 @@ std::string picture_options(const RenderArguments& arguments) {
   if (!arguments.camera.empty()) text += " --camera '" + arguments.camera + "'";
   text += options.integrator == Integrator::signature ? " --integrator signature" : " --integrator whitted";
   text += " --spp " + std::to_string(options.samples) + " --max-depth " + std::to_string(options.max_depth) +
-          " --min-weight " + number(double(options.min_weight));
+          " --min-weight " + number(options.min_weight);
   constexpr const char* kLights[] = {"auto", "scene", "studio"};
   text += std::string(" --lights ") + kLights[size_t(arguments.lights)];
   if (arguments.background) text += " --background " + number(*arguments.background);
   if (arguments.ambient) text += " --ambient " + number(*arguments.ambient);
-  text += " --exposure " + number(double(arguments.exposure));
+  text += " --exposure " + number(arguments.exposure);
   if (options.transparent) text += " --transparent";
   return text;
 }

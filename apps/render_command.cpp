@@ -203,11 +203,10 @@ Command add_render_command(CLI::App& program) {
   const auto arguments = std::make_shared<RenderArguments>();
   add_render_options(*command, *arguments);
   command->footer(
-      "Formats: .exr and .hdr hold linear floats; .png .jpg .tif .webp .tga .bmp .ppm and others 8 bits, sRGB, "
-      "clamped.\n"
-      "Alpha: colour is premultiplied in .exr and .tif, straight elsewhere.\n"
+      "Files hold linear floats (.exr .hdr) or 8 bits, sRGB, clamped (.png .jpg .tif .webp .tga .bmp\n"
+      ".ppm and others). Colour is premultiplied by alpha in .exr and .tif, straight elsewhere.\n"
       "Ctrl-C saves what is finished; a second one does not wait for it.\n"
-      "Exit status: 0 done, 2 wrong usage, 3 bad scene, 4 cannot write, 130 or 143 interrupted, 1 anything else.\n"
+      "Exit status: 0 done, 2 wrong usage, 3 bad scene, 4 cannot write, 130 or 143 interrupted, 1 other.\n"
       "\n"
       "Examples:\n"
       "  alhazen render scene.gltf -o scene.png\n"

@@ -66,7 +66,7 @@ OIIO::ImageSpec spec_for(const ImageFormat& format, int width, int height, int c
   if (!format.compressions.empty())
     spec.attribute("compression", encoding.compression.empty() ? format.compressions[0] : encoding.compression);
   if (format.quality) spec.attribute("CompressionQuality", encoding.quality > 0 ? encoding.quality : kDefaultQuality);
-  if (format.name == "jpeg") spec.attribute("jpeg:com_attributes", 1);
+  if (format.name == "jpeg") spec.attribute("jpeg:subsampling", "4:4:4");
   for (const auto& [name, value] : metadata) spec.attribute(name, value);
   return spec;
 }
@@ -90,8 +90,8 @@ void check_readable(const fs::path& file, const fs::path& part) {
 /// `pixel_stride` in bytes; only the channels that `spec` has are written.
 void write_pixels(const fs::path& file, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels,
                   OIIO::stride_t pixel_stride) {
-  const auto out = create_output(file);
   PartFile part(file);
+  const auto out = create_output(file);  // goes first: what it writes at its end goes with the part
   const auto check = [&](bool ok) {
     if (!ok) throw WriteError(file.string(), one_line(out->geterror()));
   };
@@ -100,7 +100,8 @@ void write_pixels(const fs::path& file, const OIIO::ImageSpec& spec, OIIO::TypeD
     check(out->write_image(type, pixels, pixel_stride));
     check(out->close());
   };
-  if (out->supports("ioproxy")) {  // encoded in memory, so that every failing write is seen
+  // Encode in memory, so that every failing write is seen; not TIFF, which OpenImageIO 2.4 does not finish there.
+  if (out->supports("ioproxy") && std::string(out->format_name()) != "tiff") {
     std::vector<unsigned char> bytes;
     OIIO::Filesystem::IOVecOutput writer(bytes);
     check(out->set_ioproxy(&writer));

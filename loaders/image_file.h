@@ -29,8 +29,8 @@ struct ImageFormat {
 /// What may be chosen about a format.
 struct ImageEncoding {
   bool half = false;
-  std::string compression;  // empty: the format's default
-  int quality = 0;          // 1 to 100; 0: 95
+  std::string compression = {};  // empty: the format's default
+  int quality = 0;               // 1 to 100; 0: 95
 };
 
 /// Throws UsageError for a choice that the file's format does not have.

@@ -1,0 +1,169 @@
+"""The program as other programs and people at a terminal meet it: cli.py PROGRAM SHOWCASE"""
+import json
+import os
+import pty
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM, SCENE = sys.argv[1], sys.argv[2]
+
+
+def run(*arguments, **environment):
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, env={**os.environ, **environment})
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def file(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def render(self, name, *options, **environment):
+        return run("render", SCENE, "-o", self.file(name), "--size", "96x54", *options, **environment)
+
+    def test_progress_json_is_an_object_a_line_and_ends_with_the_facts(self):
+        result = self.render("a.exr", "--progress", "json", "--size", "480x270", "--spp", "8")
+        lines = [json.loads(line) for line in result.stdout.splitlines()]
+        progress, facts = lines[:-1], lines[-1]
+        self.assertEqual({line["event"] for line in progress} | {"progress"}, {"progress"})
+        fractions = [line["fraction"] for line in progress]
+        self.assertEqual(fractions, sorted(fractions))
+        self.assertEqual((facts["event"], facts["pixels"]), ("done", 480 * 270))
+        self.assertEqual(facts["rays"]["camera"], 480 * 270 * 8)
+        self.assertEqual(set(facts["seconds"]), {"load", "build", "render", "write"})
+        self.assertEqual(result.stderr, "")
+
+    def test_nothing_but_plain_lines_without_a_terminal(self):
+        result = self.render("a.exr")
+        self.assertEqual(result.stderr, "")
+        self.assertRegex(result.stdout, r"^done: load .* s, build .* s, render .* s, write .* s; .* rays \(.* camera, ")
+        self.assertEqual(len(result.stdout.splitlines()), 1)
+
+    def test_quiet_says_nothing(self):
+        result = self.render("a.png", "--quiet", "--exposure", "6")
+        self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
+
+    def test_a_terminal_shows_one_line_and_wipes_it(self):
+        master, slave = pty.openpty()
+        process = subprocess.Popen([PROGRAM, "render", SCENE, "-o", self.file("a.exr"), "--size", "640x360", "--spp", "4"],
+                                   stdout=slave, stderr=slave,
+                                   env={**os.environ, "TERM": "xterm"})
+        os.close(slave)
+        text = b""
+        while True:
+            try:
+                chunk = os.read(master, 4096)
+            except OSError:  # the other side is closed
+                break
+            if not chunk:
+                break
+            text += chunk
+        process.wait()
+        os.close(master)
+        self.assertEqual(process.returncode, 0)
+        progress, facts = text.decode().rsplit("\r\x1b[K", 1)
+        self.assertNotIn("\n", progress)
+        self.assertRegex(facts, r"^done: .*\r\n$")
+        if progress:
+            self.assertRegex(progress, r"\[\d+/\d+ tiles +\d+%\]  [\d.]+ Mray/s  .* elapsed")
+
+    def test_info_counts_what_the_file_holds(self):
+        info = json.loads(run("info", SCENE, "--json").stdout)
+        with open(SCENE, encoding="utf-8") as file:
+            gltf = json.load(file)
+        for key in ("nodes", "meshes", "materials", "textures", "images"):
+            self.assertEqual(info[key], len(gltf[key]), key)
+        triangles = sum(gltf["accessors"][p["indices"]]["count"] // 3 for m in gltf["meshes"] for p in m["primitives"])
+        self.assertEqual(info["triangles"], triangles)
+        self.assertEqual(info["shapes"], len(gltf["extensions"]["ALHAZEN_shapes"]["shapes"]))
+        self.assertEqual(len(info["lights"]), len(gltf["extensions"]["KHR_lights_punctual"]["lights"]))
+        self.assertEqual([c["name"] for c in info["cameras"]], [c["name"] for c in gltf["cameras"]])
+        self.assertEqual({e["name"]: e["treatment"] for e in info["extensions"]},
+                         {name: "read" for name in gltf["extensionsUsed"]})
+        self.assertEqual(len(info["bounds"]["min"]), 3)
+
+    def test_info_says_which_extensions_are_ignored(self):
+        with open(self.file("x.gltf"), "w", encoding="utf-8") as file:
+            json.dump({"asset": {"version": "2.0"}, "extensionsUsed": ["X_unheard"]}, file)
+        info = json.loads(run("info", self.file("x.gltf"), "--json").stdout)
+        self.assertEqual(info["extensions"], [{"name": "X_unheard", "required": False, "treatment": "ignored"}])
+        self.assertEqual((info["nodes"], info["bounds"], info["cameras"]), (0, None, []))
+
+    def test_misspelled_words_bring_the_nearest(self):
+        for arguments, expected in (
+            (["rendr", SCENE], "did you mean 'render'?"),
+            (["render", SCENE, "--ouput", "a.png"], "did you mean '--output'?"),
+            (["render", SCENE, "--smaples=3", "-o", "a.png"], "unknown option '--smaples'"),
+            (["render", SCENE, "-o", "a.png", "--integrator", "whited"], "did you mean 'whitted'?"),
+            (["render", SCENE, "-o", self.file("a.png"), "--camera", "frnt"], "the scene has 0 'front'; did you mean"),
+            (["info", SCENE, "--jsn"], "did you mean '--json'?"),
+            ([], "expected a command: render, info"),
+        ):
+            result = run(*arguments)
+            self.assertEqual(result.returncode, 2, arguments)
+            self.assertIn(expected, result.stderr)
+            self.assertEqual(len(result.stderr.splitlines()), 1)
+
+    def test_each_help_has_an_example_and_fits(self):
+        for command in ([], ["render"], ["info"]):
+            text = run(*command, "--help").stdout
+            self.assertIn("Example", text)
+            self.assertLessEqual(max(map(len, text.splitlines())), 100)
+
+    def test_version_names_what_the_program_stands_on(self):
+        text = run("--version").stdout
+        for name in ("Alhazen ", "Embree ", " lanes", "oneTBB ", "OpenImageIO "):
+            self.assertIn(name, text)
+
+    def test_clipping_is_mentioned_for_8_bits_alone(self):
+        self.assertRegex(self.render("a.png", "--exposure", "6").stderr, r"^note: \d+ % .* --exposure -?[\d.]+ ")
+        self.assertEqual(self.render("a.exr", "--exposure", "6").stderr, "")
+        self.assertEqual(self.render("a.png").stderr, "")
+
+    def test_a_source_date_makes_the_same_bytes(self):
+        for extension in ("exr", "png", "tif", "jpg", "webp", "hdr"):
+            files = []
+            for name, threads in (("a.", "1"), ("b.", "2")):
+                self.render(name + extension, "--threads", threads, SOURCE_DATE_EPOCH="1700000000")
+                with open(self.file(name + extension), "rb") as file:
+                    files.append(file.read())
+            self.assertEqual(files[0], files[1], extension)
+
+    def test_a_second_signal_ends_at_once_and_leaves_no_half_file(self):
+        for delay in (0, 0.01, 0.1):
+            process = subprocess.Popen([PROGRAM, "render", SCENE, "-o", self.file("a.exr"), "--size", "2048x2048",
+                                        "--progress", "json"], stdout=subprocess.PIPE, text=True)
+            while json.loads(process.stdout.readline())["fraction"] == 0:
+                pass
+            process.send_signal(signal.SIGINT)
+            time.sleep(delay)
+            process.send_signal(signal.SIGINT)
+            process.communicate()
+            self.assertEqual(process.returncode, 130)
+            self.assertLessEqual(set(os.listdir(self.folder.name)), {"a.exr"})
+            if os.path.exists(self.file("a.exr")):
+                with open(self.file("a.exr"), "rb") as file:
+                    self.assertEqual(file.read(4), b"\x76\x2f\x31\x01")
+
+    def test_a_closed_pipe_does_not_stop_a_render(self):
+        process = subprocess.Popen([PROGRAM, "render", SCENE, "-o", self.file("a.exr"), "--size", "96x54",
+                                    "--progress", "json"], stdout=subprocess.PIPE)
+        process.stdout.close()
+        self.assertEqual(process.wait(), 0)
+        self.assertTrue(os.path.exists(self.file("a.exr")))
+
+    def test_a_full_standard_output_is_an_error(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("no /dev/full here")
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            self.assertEqual(subprocess.run([PROGRAM, "info", SCENE], stdout=full, stderr=subprocess.DEVNULL).returncode, 4)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
