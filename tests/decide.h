@@ -107,6 +107,23 @@ inline FloatLine aimed(Rng& rng, const Vec3d& target, const Vec3d& origin, doubl
   return {from, nudged(rng, Vec3f((target - Vec3d(from)) * length))};
 }
 
+/// A line of which only so much is known.
+struct UncertainLine {
+  ObjectLine<double> known;
+  ExactLine exactly;  // within the errors
+};
+
+/// Both what is known and what is so pass `target` beside it, within what is not known.
+inline UncertainLine uncertain_line(Rng& rng, const Vec3d& target, const Vec3d& middle) {
+  const Vec3d o = middle + uniform_vector(rng, -3, 3), d = target - o;
+  const double accuracy = std::exp2(uniform(rng, -50, -20));
+  const Vec3d o_error = abs(o) * accuracy, d_error = abs(d) * accuracy;
+  const Vec3d known_o = o + o_error * uniform_vector(rng, -1, 1), known_d = d + d_error * uniform_vector(rng, -1, 1);
+  return {{known_o, known_d, o_error, d_error},
+          {exact(known_o) + exact(o_error * uniform_vector(rng, -1, 1)),
+           exact(known_d) + exact(d_error * uniform_vector(rng, -1, 1))}};
+}
+
 /// Lines of every awkward kind for a shape of about the size of [-1, 1]³ about `middle`, with `target` on an edge, a
 /// vertex or inside of it.
 inline FloatLine awkward_line(Rng& rng, int kind, const Vec3d& target, const Vec3d& middle) {
@@ -126,12 +143,13 @@ inline FloatLine awkward_line(Rng& rng, int kind, const Vec3d& target, const Vec
       const Vec3d d{at(0), at(1), at(2)};
       return {nudged(rng, Vec3f(target - d * uniform(rng, -2, 2))), Vec3f(d)};
     }
+    case 5: return {nudged(rng, Vec3f(target)), Vec3f(uniform_vector(rng, -1, 1))};  // leaves the surface
     default: {  // a lattice: what is met is met exactly
       const Vec3f origin = Vec3f(middle) + uniform_lattice(rng, 4);
       return {origin, Vec3f(target) - origin};
     }
   }
 }
-inline constexpr int kAwkwardKinds = 6;
+inline constexpr int kAwkwardKinds = 7;
 
 }  // namespace alhazen

@@ -196,16 +196,8 @@ TEST(Polygon, KeepsItsErrorBoundsOnLinesThatAreRoundedThemselves) {
     const Loops loops = random_valid_loops(rng, i % kPolygonKinds, middle);
     const Polygon polygon = make_polygon(loops);
     for (int j = 0; j < 20; ++j, ++rays) {
-      const Vec3d o = middle + uniform_vector(rng, -3, 3), d = random_target(rng, loops) - o;
-      const double accuracy = std::exp2(uniform(rng, -50, -20));
-      const Vec3d o_error = abs(o) * accuracy, d_error = abs(d) * accuracy;
-      const Vec3d o_off = o_error * uniform_vector(rng, -1, 1), d_off = d_error * uniform_vector(rng, -1, 1);
-      const auto sum = [](const Vec3d& a, const Vec3d& b) -> Vec3<Rational> {
-        return {Rational(exact(a.x) + exact(b.x)), Rational(exact(a.y) + exact(b.y)),
-                Rational(exact(a.z) + exact(b.z))};
-      };
-      const auto answer = exact_crossings(polygon, ExactLine{sum(o, o_off), sum(d, d_off)});
-      sure += expect_exact(crossings(polygon, ObjectLine<double>{o, d, o_error, d_error}), answer);
+      const UncertainLine line = uncertain_line(rng, random_target(rng, loops), middle);
+      sure += expect_exact(crossings(polygon, line.known), exact_crossings(polygon, line.exactly));
       if (HasFailure()) FAIL() << "polygon " << i << " line " << j;
     }
   }

@@ -74,15 +74,8 @@ TEST(Triangle, KeepsItsErrorBoundsOnLinesThatAreRoundedThemselves) {
   for (int i = 0; i < 20000; ++i) {
     Vec3d middle;
     const Triangle t = random_triangle(rng, i % 4, middle);
-    const Vec3d o = middle + uniform_vector(rng, -3, 3), d = random_target(rng, t) - o;
-    const double accuracy = std::exp2(uniform(rng, -50, -20));
-    const Vec3d o_error = abs(o) * accuracy, d_error = abs(d) * accuracy;
-    const Vec3d o_off = o_error * uniform_vector(rng, -1, 1), d_off = d_error * uniform_vector(rng, -1, 1);
-    const auto sum = [](const Vec3d& a, const Vec3d& b) -> Vec3<Rational> {
-      return {Rational(exact(a.x) + exact(b.x)), Rational(exact(a.y) + exact(b.y)), Rational(exact(a.z) + exact(b.z))};
-    };
-    const auto answer = exact_crossings(t, ExactLine{sum(o, o_off), sum(d, d_off)});
-    sure += expect_exact(crossings(t, ObjectLine<double>{o, d, o_error, d_error}), answer);
+    const UncertainLine line = uncertain_line(rng, random_target(rng, t), middle);
+    sure += expect_exact(crossings(t, line.known), exact_crossings(t, line.exactly));
     if (HasFailure()) FAIL() << "line " << i;
   }
   EXPECT_GT(sure, 5000);
