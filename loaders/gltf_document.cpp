@@ -1,0 +1,132 @@
+#include "loaders/gltf_document.h"
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <string_view>
+
+#include "core/error.h"
+
+namespace alhazen {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr int kMaxDepth = 64;
+constexpr size_t kMaxJsonBytes = size_t{1} << 30;
+constexpr size_t kGlbHeader = 12, kChunkHeader = 8;
+constexpr uint32_t kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;
+
+struct Chunk {
+  uint32_t type;
+  std::span<const uint8_t> bytes;
+};
+
+/// The chunks of a GLB; what follows its declared length is ignored.
+std::vector<Chunk> glb_chunks(const std::string& name, std::span<const uint8_t> file) {
+  const auto fail = [&](const std::string& reason) { throw LoadError(name, "", reason); };
+  const auto word = [&](size_t at) {
+    uint32_t w;
+    std::memcpy(&w, file.data() + at, sizeof w);
+    return w;
+  };
+  if (file.size() < kGlbHeader + kChunkHeader)
+    fail("expected a GLB header, found only " + std::to_string(file.size()) + " bytes");
+  if (word(4) != 2) fail("expected GLB version 2, found " + std::to_string(word(4)));
+  const size_t end = word(8);
+  if (end > file.size())
+    fail("expected a GLB of " + std::to_string(end) + " bytes, found " + std::to_string(file.size()));
+  std::vector<Chunk> chunks;
+  for (size_t at = kGlbHeader; at + kChunkHeader <= end;) {
+    const size_t length = word(at), begin = at + kChunkHeader;
+    if (length > end - begin)
+      fail("GLB chunk " + std::to_string(chunks.size()) + " of " + std::to_string(length) + " bytes exceeds the file");
+    chunks.push_back({word(at + 4), file.subspan(begin, length)});
+    at = begin + (length + 3) / 4 * 4;
+  }
+  if (chunks.empty() || chunks[0].type != kJsonChunk) fail("expected JSON as the GLB's first chunk");
+  return chunks;
+}
+
+/// Whether brackets, outside of strings, are nested deeper than kMaxDepth.
+bool too_deep(std::string_view text) {
+  int depth = 0;
+  bool quoted = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c == '\\') ++i;
+      if (c == '"') quoted = false;
+    } else if (c == '"') {
+      quoted = true;
+    } else if (c == '[' || c == '{') {
+      if (++depth > kMaxDepth) return true;
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+  return false;
+}
+
+/// 3.0 is the integer 3, as JSON Schema has it.
+void make_integral(json& value) {
+  constexpr double kExact = 9007199254740992.0;  // 2^53
+  if (value.is_number_float()) {
+    const double d = value.get<double>();
+    if (d >= 0 && d < kExact && d == std::floor(d)) value = uint64_t(d);
+  } else if (value.is_structured()) {
+    for (json& element : value) make_integral(element);
+  }
+}
+
+json parse_json(const std::string& name, std::string_view text) {
+  while (!text.empty() && text.back() == '\0') text.remove_suffix(1);  // padding of some GLB writers
+  if (text.size() > kMaxJsonBytes) throw LoadError(name, "", "its JSON is longer than 1 GiB");
+  if (too_deep(text)) throw LoadError(name, "", "its JSON is nested more than " + std::to_string(kMaxDepth) + " deep");
+  try {
+    json root = json::parse(text);
+    make_integral(root);
+    return root;
+  } catch (const json::exception& error) {
+    const std::string what = error.what();
+    const size_t cut = what.find("] ");  // the library's own numbering of its errors
+    throw LoadError(name, "", "not valid JSON: " + (cut == std::string::npos ? what : what.substr(cut + 2)));
+  }
+}
+
+}  // namespace
+
+std::optional<Bytes> read_file(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return std::nullopt;
+  const auto size = fs::file_size(path, error);
+  std::ifstream in(path, std::ios::binary);
+  if (!in || error) return std::nullopt;
+  Bytes bytes(size);
+  if (size && !in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size))) return std::nullopt;
+  return bytes;
+}
+
+GltfDocument read_gltf_document(const fs::path& path) {
+  const std::string name = path.string();
+  auto bytes = read_file(path);
+  if (!bytes) throw LoadError(name, "", "cannot be read, expected a .gltf or .glb file");
+  const auto text_of = [](std::span<const uint8_t> s) {
+    return std::string_view(reinterpret_cast<const char*>(s.data()), s.size());
+  };
+  GltfDocument document;
+  document.json.file = name;
+  document.folder = fs::absolute(path).parent_path();
+  if (!text_of(*bytes).starts_with("glTF")) {
+    document.json.root = parse_json(name, text_of(*bytes));
+    return document;
+  }
+  document.file = std::move(*bytes);
+  const std::vector<Chunk> chunks = glb_chunks(name, document.file);
+  document.json.root = parse_json(name, text_of(chunks[0].bytes));
+  if (chunks.size() > 1 && chunks[1].type == kBinChunk) document.bin = chunks[1].bytes;
+  return document;
+}
+
+}  // namespace alhazen

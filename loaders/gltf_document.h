@@ -1,0 +1,30 @@
+// A glTF file's container and JSON, before anything in it is believed.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "loaders/json_ref.h"
+
+namespace alhazen {
+
+using Bytes = std::vector<uint8_t>;
+
+struct GltfDocument {
+  JsonDocument json;             // integral numbers are integers, however they were written
+  std::filesystem::path folder;  // where its URIs begin
+  Bytes file;                    // of a GLB, whose chunk is seen by `bin`; else empty
+  std::optional<std::span<const uint8_t>> bin;
+};
+
+/// Reads .gltf or .glb, told apart by the first bytes. Throws LoadError where the file is no regular file, its GLB
+/// header or chunks are wrong, or its JSON is invalid, deeper than 64 levels or longer than 1 GiB.
+[[nodiscard]] GltfDocument read_gltf_document(const std::filesystem::path& path);
+
+/// All bytes of a regular file; none where it cannot be read.
+[[nodiscard]] std::optional<Bytes> read_file(const std::filesystem::path& path);
+
+}  // namespace alhazen

@@ -1,0 +1,14 @@
+// glTF scenes: the nodes that are shown, and the meshes, shapes, cameras and lights that they place.
+#pragma once
+
+#include "loaders/gltf_source.h"
+
+namespace alhazen {
+
+/// Fills what nodes bring to a scene whose materials, meshes and shapes are there already: instances, cameras, lights,
+/// names, ambient light and background. Shown is what hangs from the file's `scene`, else its first, else all roots.
+/// Throws LoadError for a node graph that is no forest, scene nodes that are no roots, matrices that are not affine,
+/// and shapes placed by a matrix that cannot be inverted.
+void read_scene(GltfSource& source, Scene& scene);
+
+}  // namespace alhazen

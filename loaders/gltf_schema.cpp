@@ -1,0 +1,227 @@
+#include "loaders/gltf_schema.h"
+
+#include <numbers>
+
+#include "accel/geometry.h"
+#include "loaders/gltf_shapes.h"
+#include "loaders/json_check.h"
+
+namespace alhazen {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr uint64_t kMaxOffset = uint64_t{1} << 53;
+const char* const kLights = "/extensions/KHR_lights_punctual/lights";
+
+void check_version(const JsonRef& r) {
+  text()(r);
+  if (!r.as<std::string>().starts_with("2.")) r.expected("version 2.x");
+}
+
+// ---- Buffers ----
+
+Check buffer() { return object({{"byteLength", integer(0, kMaxOffset), required}, {"uri", text()}}); }
+
+Check buffer_view() {
+  const Check stride = both(integer(0, 252), [](const JsonRef& r) {
+    if (r.as<uint64_t>() % 4) r.expected("a multiple of 4");
+  });
+  return object({{"buffer", index_into("/buffers"), required},
+                 {"byteOffset", integer(0, kMaxOffset)},
+                 {"byteLength", integer(0, kMaxOffset), required},
+                 {"byteStride", stride}});
+}
+
+Check accessor() {
+  const Check indices = object({{"bufferView", index_into("/bufferViews"), required},
+                                {"byteOffset", integer()},
+                                {"componentType", one_of(std::vector<uint64_t>{5121, 5123, 5125}), required}});
+  const Check values = object({{"bufferView", index_into("/bufferViews"), required}, {"byteOffset", integer()}});
+  const Check sparse =
+      object({{"count", integer(1), required}, {"indices", indices, required}, {"values", values, required}});
+  return object(
+      {{"bufferView", index_into("/bufferViews")},
+       {"byteOffset", integer(0, kMaxOffset)},
+       {"componentType", one_of(std::vector<uint64_t>{5120, 5121, 5122, 5123, 5125, 5126}), required},
+       {"normalized", boolean()},
+       {"count", integer(1, kNone - 1), required},
+       {"type", one_of(std::vector<std::string>{"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"}), required},
+       {"sparse", sparse}});
+}
+
+// ---- Materials ----
+
+Check image() { return object({{"name", text()}, {"uri", text()}, {"bufferView", index_into("/bufferViews")}}); }
+
+Check sampler() {
+  const Check wrap = one_of(std::vector<uint64_t>{10497, 33071, 33648});
+  return object({{"magFilter", one_of(std::vector<uint64_t>{9728, 9729})},
+                 {"minFilter", one_of(std::vector<uint64_t>{9728, 9729, 9984, 9985, 9986, 9987})},
+                 {"wrapS", wrap},
+                 {"wrapT", wrap}});
+}
+
+Check texture() {
+  return object({{"name", text()}, {"source", index_into("/images")}, {"sampler", index_into("/samplers")}});
+}
+
+Check texture_info(std::vector<Property> more = {}) {
+  const Check uv_set = integer(0, kMaxUvSets - 1);
+  const Check transform =
+      object({{"offset", numbers(2)}, {"rotation", number()}, {"scale", numbers(2)}, {"texCoord", uv_set}});
+  more.push_back({"index", index_into("/textures"), required});
+  more.push_back({"texCoord", uv_set});
+  more.push_back({"extensions", object({{"KHR_texture_transform", transform}})});
+  return object(std::move(more));
+}
+
+Check phong() {
+  return closed_object({{"ambientFactor", color()},
+                        {"diffuseFactor", color()},
+                        {"specularFactor", color()},
+                        {"shininess", number_above(0)},
+                        {"reflectionFactor", color()},
+                        {"transmissionFactor", color()},
+                        {"ior", number(1)},
+                        {"fresnel", boolean()},
+                        {"ambientTexture", texture_info()},
+                        {"diffuseTexture", texture_info()}});
+}
+
+Check material_extensions() {
+  const Check zero_or_from_one = both(number(0), [](const JsonRef& r) {
+    if (r.as<double>() > 0 && r.as<double>() < 1) r.expected("0 or a number >= 1");
+  });
+  return object({{"KHR_materials_unlit", object({})},
+                 {"KHR_materials_emissive_strength", object({{"emissiveStrength", number(0)}})},
+                 {"KHR_materials_ior", object({{"ior", zero_or_from_one}})},
+                 {"KHR_materials_transmission",
+                  object({{"transmissionFactor", number(0, 1)}, {"transmissionTexture", texture_info()}})},
+                 {"KHR_materials_specular", object({{"specularFactor", number(0, 1)},
+                                                    {"specularTexture", texture_info()},
+                                                    {"specularColorFactor", color()},
+                                                    {"specularColorTexture", texture_info()}})},
+                 {"ALHAZEN_materials_phong", phong()}});
+}
+
+Check material() {
+  const Check metallic_roughness = object({{"baseColorFactor", numbers(4, 0, 1)},
+                                           {"baseColorTexture", texture_info()},
+                                           {"metallicFactor", number(0, 1)},
+                                           {"roughnessFactor", number(0, 1)},
+                                           {"metallicRoughnessTexture", texture_info()}});
+  return object({{"name", text()},
+                 {"pbrMetallicRoughness", metallic_roughness},
+                 {"normalTexture", texture_info({{"scale", number()}})},
+                 {"occlusionTexture", texture_info({{"strength", number(0, 1)}})},
+                 {"emissiveTexture", texture_info()},
+                 {"emissiveFactor", color()},
+                 {"alphaMode", one_of(std::vector<std::string>{"OPAQUE", "MASK", "BLEND"})},
+                 {"alphaCutoff", number(0)},
+                 {"doubleSided", boolean()},
+                 {"extensions", material_extensions()}});
+}
+
+// ---- Meshes, cameras, lights, nodes ----
+
+Check mesh() {
+  const Check attributes = map_of(index_into("/accessors"));
+  const Check primitive = object({{"attributes", attributes, required},
+                                  {"indices", index_into("/accessors")},
+                                  {"material", index_into("/materials")},
+                                  {"mode", integer(0, 6)},
+                                  {"targets", list_of(attributes)}});
+  return object({{"name", text()}, {"primitives", list_of(primitive), required}, {"weights", list_of(number())}});
+}
+
+Check camera() {
+  const Check below_pi = both(number_above(0), [](const JsonRef& r) {
+    if (!(r.as<double>() < kPi)) r.expected("an angle below pi");
+  });
+  const Check not_zero = both(number(), [](const JsonRef& r) {
+    if (r.as<float>() == 0) r.expected("a number other than 0");
+  });
+  const Check perspective = object(
+      {{"yfov", below_pi, required}, {"znear", number(), required}, {"zfar", number()}, {"aspectRatio", number()}});
+  const Check orthographic = object({{"xmag", number(), required},
+                                     {"ymag", not_zero, required},
+                                     {"znear", number(), required},
+                                     {"zfar", number(), required}});
+  return both(object({{"name", text()},
+                      {"type", one_of(std::vector<std::string>{"perspective", "orthographic"}), required},
+                      {"perspective", perspective},
+                      {"orthographic", orthographic}}),
+              [](const JsonRef& r) {
+                object({{r["type"].as<std::string>(), anything(), required}})(r);
+              });
+}
+
+Check light() {
+  const Check spot =
+      both(object({{"innerConeAngle", number(0, kPi / 2)}, {"outerConeAngle", number(0, kPi / 2 + 1e-6)}}),
+           [](const JsonRef& r) {
+             if (!(r.get("innerConeAngle", 0.0) < r.get("outerConeAngle", kPi / 4)))
+               r.fail("expected innerConeAngle < outerConeAngle");
+           });
+  const Check attenuation = one_of(std::vector<std::string>{"inverse-square", "none"});
+  return object({{"name", text()},
+                 {"type", one_of(std::vector<std::string>{"directional", "point", "spot"}), required},
+                 {"color", color()},
+                 {"intensity", number(0)},
+                 {"range", number_above(0)},
+                 {"spot", spot},
+                 {"extensions", object({{"ALHAZEN_lights", closed_object({{"attenuation", attenuation}})}})}});
+}
+
+Check node() {
+  const Check extensions =
+      object({{"KHR_lights_punctual", object({{"light", index_into(kLights), required}})},
+              {"ALHAZEN_shapes", closed_object({{"shape", index_into("/extensions/ALHAZEN_shapes/shapes"), required},
+                                                {"material", index_into("/materials")}})}});
+  return object({{"name", text()},
+                 {"children", list_of(index_into("/nodes"))},
+                 {"matrix", numbers(16)},
+                 {"translation", numbers(3)},
+                 {"rotation", numbers(4)},
+                 {"scale", numbers(3)},
+                 {"mesh", index_into("/meshes")},
+                 {"camera", index_into("/cameras")},
+                 {"extensions", extensions}});
+}
+
+Check scene() {
+  const Check lights = closed_object({{"ambient", color()}, {"background", color()}});
+  return object({{"name", text()},
+                 {"nodes", list_of(index_into("/nodes"))},
+                 {"extensions", object({{"ALHAZEN_lights", lights}})}});
+}
+
+Check gltf() {
+  const Check extensions = object({{"KHR_lights_punctual", object({{"lights", list_of(light())}})},
+                                   {"ALHAZEN_shapes", closed_object({{"shapes", list_of(shape_description())}})}});
+  return object({{"asset", object({{"version", check_version, required}}), required},
+                 {"extensionsUsed", list_of(text())},
+                 {"extensionsRequired", list_of(text())},
+                 {"buffers", list_of(buffer())},
+                 {"bufferViews", list_of(buffer_view())},
+                 {"accessors", list_of(accessor())},
+                 {"images", list_of(image())},
+                 {"samplers", list_of(sampler())},
+                 {"textures", list_of(texture())},
+                 {"materials", list_of(material())},
+                 {"meshes", list_of(mesh())},
+                 {"cameras", list_of(camera())},
+                 {"nodes", list_of(node())},
+                 {"scenes", list_of(scene())},
+                 {"scene", index_into("/scenes")},
+                 {"extensions", extensions}});
+}
+
+}  // namespace
+
+void check_gltf(const JsonRef& root) {
+  static const Check whole = gltf();
+  whole(root);
+}
+
+}  // namespace alhazen
