@@ -284,6 +284,10 @@ TEST(GltfErrors, AnExtensionThatIsMerelyUsedGivesOneWarning) {
   const Loaded loaded = load_json(document);
   ASSERT_EQ(loaded.warnings.size(), 1u);
   EXPECT_TRUE(loaded.warnings[0].ends_with("/extensionsUsed: ignored: KHR_a, KHR_b"));
+  ASSERT_EQ(loaded.loaded.extensions.size(), 3u);
+  EXPECT_EQ(loaded.loaded.extensions[0].name, "KHR_a");
+  EXPECT_FALSE(loaded.loaded.extensions[0].read);
+  EXPECT_TRUE(loaded.loaded.extensions[1].read);
 }
 
 /// The pointers of all values in a document, those of objects and arrays too.
