@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/fork_join.h"
 #include "loaders/tangents.h"
 
 namespace alhazen {
@@ -208,9 +209,10 @@ void complete_tangents(std::vector<Mesh>& meshes, const std::vector<Material>& m
   for (Mesh& mesh : meshes)
     for (TriangleMesh& part : mesh.parts)
       if (part.tangents.empty() && materials[part.material].normal_texture) lacking.push_back(&part);
-  tbb::parallel_for(size_t{0}, lacking.size(), [&](size_t i) {
+  const ForkJoin order;
+  tbb::parallel_for(size_t{0}, lacking.size(), order.task([&](size_t i) {
     generate_tangents(*lacking[i], materials[lacking[i]->material].normal_texture.uv_set);
-  });
+  }));
 }
 
 }  // namespace
