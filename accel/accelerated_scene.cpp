@@ -5,37 +5,23 @@
 #include <vector>
 
 #include "accel/embree.h"
+#include "accel/shape_geometry.h"
 #include "core/error.h"
 
 namespace alhazen {
 namespace {
 
-/// A placed shape as the callbacks read it.
-struct PlacedShape {
-  Affine3d object_from_world;
-  const Shape* shape;
-  uint32_t object;
-  Opacity opacity;
-};
-
 /// What a top-level geometry number stands for.
 struct TopEntry {
   enum class Kind : uint8_t { none, baked_part, instance, shapes } kind = Kind::none;
-  uint32_t object = kNone, part = 0;
+  uint32_t object = kNone, part = 0;  // shapes: their group in place of the part
 };
-
-/// The largest float not above, the smallest not below.
-float round_down(double x) {
-  const float f = float(x);
-  return double(f) > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
-}
-float round_up(double x) { return -round_down(-x); }
 
 }  // namespace
 
 struct AcceleratedScene::Impl {
   SurfaceFilter filter;
-  std::vector<PlacedShape> shapes;
+  std::vector<std::unique_ptr<ShapeGroup>> shape_groups;
   std::vector<TopEntry> top;
   std::vector<RTCScene> mesh_scenes;
   RTCDevice device = nullptr;
@@ -53,25 +39,27 @@ struct AcceleratedScene::Impl {
   struct Ids {
     uint32_t object, part, primitive;
   };
-  [[nodiscard]] Ids ids(uint32_t instance, uint32_t geometry, uint32_t primitive) const {
+  /// `u` holds a shape's face, which takes the place of the part.
+  [[nodiscard]] Ids ids(uint32_t instance, uint32_t geometry, uint32_t primitive, float u) const {
     if (instance != RTC_INVALID_GEOMETRY_ID) return {top[instance].object, geometry, primitive};
     const TopEntry& entry = top[geometry];
-    if (entry.kind == TopEntry::Kind::shapes) return {shapes[primitive].object, 0, 0};
+    if (entry.kind == TopEntry::Kind::shapes)
+      return {shape_groups[entry.part]->members[primitive].object, uint32_t(u), 0};
     return {entry.object, entry.part, primitive};
   }
 };
 
 /// Embree's callbacks and packet loops; they see Impl, nobody else does.
 struct AcceleratedScene::Traversal {
-  struct Query : embree::Query {
+  struct Query : WaveQuery {
     const Impl* impl;
-    Rgb* visible;  // by ray id; shadow queries only
-    Query(const Impl& i, Coherence rays, Rgb* v) : embree::Query(rays), impl(&i), visible(v) {}
+    Query(const Impl& i, Coherence rays, Rgb* visible_by_ray) : WaveQuery(rays, visible_by_ray), impl(&i) {}
   };
 
   static Crossing crossing_of(const RTCFilterFunctionNArguments* args, const Impl& impl, unsigned lane) {
-    const Impl::Ids ids = impl.ids(RTCHitN_instID(args->hit, args->N, lane, 0),
-                                   RTCHitN_geomID(args->hit, args->N, lane), RTCHitN_primID(args->hit, args->N, lane));
+    const Impl::Ids ids =
+        impl.ids(RTCHitN_instID(args->hit, args->N, lane, 0), RTCHitN_geomID(args->hit, args->N, lane),
+                 RTCHitN_primID(args->hit, args->N, lane), RTCHitN_u(args->hit, args->N, lane));
     return {
         ids.object, ids.part, ids.primitive, RTCHitN_u(args->hit, args->N, lane), RTCHitN_v(args->hit, args->N, lane),
         {}};
@@ -92,77 +80,6 @@ struct AcceleratedScene::Traversal {
       Rgb& visible = query.visible[RTCRayN_id(args->ray, args->N, i)];
       visible *= query.impl->filter.transmittance(query.impl->filter.data, crossing_of(args, *query.impl, i));
       if (max_component(visible) > 0) args->valid[i] = 0;
-    }
-  }
-
-  static void shape_bounds(const RTCBoundsFunctionArguments* args) {
-    const PlacedShape& placed = static_cast<const Impl*>(args->geometryUserPtr)->shapes[args->primID];
-    const Bounds3d b = std::visit([](const auto& shape) { return bounds(shape); }, *placed.shape);
-    const Bounds3d w = transform_bounds(inverse(placed.object_from_world), b);
-    // A margin of a few double roundings, so that the box is conservative.
-    const Vec3d e = (abs(w.lower) + abs(w.upper)) * 1e-14;
-    args->bounds_o->lower_x = round_down(w.lower.x - e.x), args->bounds_o->upper_x = round_up(w.upper.x + e.x);
-    args->bounds_o->lower_y = round_down(w.lower.y - e.y), args->bounds_o->upper_y = round_up(w.upper.y + e.y);
-    args->bounds_o->lower_z = round_down(w.lower.z - e.z), args->bounds_o->upper_z = round_up(w.upper.z + e.z);
-  }
-
-  static Rayd object_ray(const PlacedShape& placed, RTCRayN* ray, unsigned n, unsigned i) {
-    const Rayd world{{RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)},
-                     {RTCRayN_dir_x(ray, n, i), RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i)},
-                     RTCRayN_tnear(ray, n, i),
-                     RTCRayN_tfar(ray, n, i)};
-    return transform_ray(placed.object_from_world, world);
-  }
-
-  static void intersect_shape(const RTCIntersectFunctionNArguments* args) {
-    const Impl& impl = *static_cast<const Impl*>(args->geometryUserPtr);
-    const PlacedShape& placed = impl.shapes[args->primID];
-    RTCRayN* ray = RTCRayHitN_RayN(args->rayhit, args->N);
-    RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
-    for (unsigned i = 0; i < args->N; ++i) {
-      if (!args->valid[i]) continue;
-      embree::reject(args, i);  // until a crossing is found to count
-      const Rayd object = object_ray(placed, ray, args->N, i);
-      const Crossings found = std::visit([&](const auto& shape) { return crossings(shape, object); }, *placed.shape);
-      for (int k = 0; k < found.count; ++k) {
-        const float t = float(found.t[k]);
-        if (!(t >= RTCRayN_tnear(ray, args->N, i) && t <= RTCRayN_tfar(ray, args->N, i))) continue;
-        // At equal distances the smaller (geometry, primitive) wins, whatever the order of traversal.
-        const uint32_t other = RTCHitN_geomID(hit, args->N, i);
-        if (t == RTCRayN_tfar(ray, args->N, i) && other != RTC_INVALID_GEOMETRY_ID &&
-            (other < args->geomID || (other == args->geomID && RTCHitN_primID(hit, args->N, i) <= args->primID)))
-          continue;
-        if (placed.opacity == Opacity::cutout &&
-            !impl.filter.is_present(impl.filter.data, {placed.object, 0, 0, 0, 0, point_at(object, found.t[k])}))
-          continue;
-        embree::accept(args, i, t);
-        break;
-      }
-    }
-  }
-
-  static void occlude_shape(const RTCOccludedFunctionNArguments* args) {
-    const Query& query = embree::query_of<Query>(args);
-    const Impl& impl = *query.impl;
-    const PlacedShape& placed = impl.shapes[args->primID];
-    for (unsigned i = 0; i < args->N; ++i) {
-      if (!args->valid[i]) continue;
-      embree::reject(args, i);  // until a crossing is found to count
-      const Rayd object = object_ray(placed, args->ray, args->N, i);
-      const Crossings found = std::visit([&](const auto& shape) { return crossings(shape, object); }, *placed.shape);
-      for (int k = 0; k < found.count; ++k) {
-        const float t = float(found.t[k]);
-        if (!(t >= RTCRayN_tnear(args->ray, args->N, i) && t <= RTCRayN_tfar(args->ray, args->N, i))) continue;
-        Rgb& visible = query.visible[RTCRayN_id(args->ray, args->N, i)];
-        if (placed.opacity == Opacity::opaque)
-          visible = Rgb(0.0f);
-        else
-          visible *=
-              impl.filter.transmittance(impl.filter.data, {placed.object, 0, 0, 0, 0, point_at(object, found.t[k])});
-        if (max_component(visible) > 0) continue;
-        embree::accept(args, i);
-        break;
-      }
     }
   }
 
@@ -195,7 +112,8 @@ struct AcceleratedScene::Traversal {
         const size_t k = first + size_t(i);
         hits.object[k] = kNone;
         if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-        const Impl::Ids ids = impl.ids(packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i]);
+        const Impl::Ids ids =
+            impl.ids(packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i], packet.hit.u[i]);
         hits.object[k] = ids.object, hits.part[k] = ids.part, hits.primitive[k] = ids.primitive;
         hits.t[k] = packet.ray.tfar[i], hits.u[k] = packet.hit.u[i], hits.v[k] = packet.hit.v[i];
       }
@@ -257,18 +175,6 @@ struct AcceleratedScene::Traversal {
     rtcAttachGeometryByID(impl.scene, g, id);
     rtcReleaseGeometry(g);
   }
-
-  static void attach_shapes(Impl& impl, uint32_t id) {
-    RTCGeometry g = embree::new_geometry(impl.device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(g, unsigned(impl.shapes.size()));
-    rtcSetGeometryUserData(g, &impl);
-    rtcSetGeometryBoundsFunction(g, shape_bounds, nullptr);
-    rtcSetGeometryIntersectFunction(g, intersect_shape);
-    rtcSetGeometryOccludedFunction(g, occlude_shape);
-    rtcCommitGeometry(g);
-    rtcAttachGeometryByID(impl.scene, g, id);
-    rtcReleaseGeometry(g);
-  }
 };
 
 AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter& filter, const BuildOptions& options)
@@ -307,15 +213,12 @@ AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter
     impl.top.push_back({TopEntry::Kind::instance, object, 0});
     impl.has_instances = true;
   }
-  for (uint32_t i = 0; i < geometry.shape_instances.size(); ++i) {
-    const ShapeInstance& placed = geometry.shape_instances[i];
-    impl.shapes.push_back({inverse(placed.world_from_object), &geometry.shapes[placed.shape],
-                           uint32_t(geometry.mesh_instances.size()) + i,
-                           filter.opacity.empty() ? Opacity::opaque : filter.opacity[placed.material]});
-  }
-  if (!impl.shapes.empty()) {
-    Traversal::attach_shapes(impl, uint32_t(impl.top.size()));
-    impl.top.push_back({TopEntry::Kind::shapes, kNone, 0});
+  impl.shape_groups = group_shapes(geometry, filter);
+  for (uint32_t k = 0; k < impl.shape_groups.size(); ++k) {
+    RTCGeometry g = new_shape_geometry(impl.device, *impl.shape_groups[k]);
+    rtcAttachGeometryByID(impl.scene, g, unsigned(impl.top.size()));
+    rtcReleaseGeometry(g);
+    impl.top.push_back({TopEntry::Kind::shapes, kNone, k});
   }
   rtcCommitScene(impl.scene);
   if (const RTCError error = rtcGetDeviceError(impl.device); error != RTC_ERROR_NONE)

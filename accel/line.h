@@ -23,6 +23,25 @@ struct ObjectLine {
   Vec3<T> origin_error, direction_error;  // absolute, >= 0
 };
 
+/// The point of the line at `t`, a number taken as exact, as the origin of another line.
+template <class T>
+ObjectLine<T> moved_origin(const ObjectLine<T>& line, const T& t) {
+  const double u = kUnitRoundoff<T>;
+  ObjectLine<T> moved = line;
+  const T size = absolute(t);
+  const auto axis = [&](const T& o, const T& d, const T& oe, const T& de, T& p, T& pe) {
+    p = o + t * d;
+    pe = oe + size * (de + absolute(d) * (3 * u)) + absolute(o) * (3 * u);
+  };
+  axis(line.origin.x, line.direction.x, line.origin_error.x, line.direction_error.x, moved.origin.x,
+       moved.origin_error.x);
+  axis(line.origin.y, line.direction.y, line.origin_error.y, line.direction_error.y, moved.origin.y,
+       moved.origin_error.y);
+  axis(line.origin.z, line.direction.z, line.origin_error.z, line.direction_error.z, moved.origin.z,
+       moved.origin_error.z);
+  return moved;
+}
+
 /// Which part of a shape's surface: 2 axis + side for the planes of a box (side 1: the upper), or the curved wall.
 inline constexpr int kWallFace = 6;
 

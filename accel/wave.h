@@ -35,6 +35,7 @@ struct HitWave {
   Lanes<float> t;                           // in lengths of the ray's direction
   Lanes<float> u, v;                        // barycentric weights of a triangle's second and third vertex
   Lanes<uint32_t> object, part, primitive;  // Geometry's object number; part of its mesh; triangle within the part
+                                            // (shapes: face in place of the part, 0)
 
   void resize(size_t n) {
     t.resize(n), u.resize(n), v.resize(n), object.resize(n), part.resize(n), primitive.resize(n);

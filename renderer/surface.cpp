@@ -60,19 +60,19 @@ SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v)
   return s;
 }
 
-SurfacePoint shape_point(const Scene& scene, uint32_t object, const Vec3d& p_near_object) {
+SurfacePoint shape_point(const Scene& scene, uint32_t object, int face, const Vec3d& p_near_object) {
   const ShapeInstance& placed = shape_instance(scene.geometry, object);
   const Affine3d& m = placed.world_from_object;
   SurfacePoint s;
   s.material = placed.material;
   std::visit(
       [&](const auto& shape) {
-        const Vec3d p = project(shape, p_near_object);
+        const Vec3d p = project(shape, p_near_object, face);
         s.p_world = transform_point(m, p);
-        s.ng_world = s.ns_world = Vec3f(normalize(transform_normal(m, normal(shape, p))));
-        s.tangent_world = Vec3f(normalize(transform_vector(m, u_tangent(shape, p))));
+        s.ng_world = s.ns_world = Vec3f(normalize(transform_normal(m, normal(shape, p, face))));
+        s.tangent_world = Vec3f(normalize(transform_vector(m, u_tangent(shape, p, face))));
         s.bitangent_sign = determinant(m) < 0 ? 1.0f : -1.0f;  // v runs down
-        s.uvs[0] = texture_coordinates(shape, p);
+        s.uvs[0] = texture_coordinates(shape, p, face);
       },
       scene.geometry.shapes[placed.shape]);
   s.uv_count = 1;
@@ -88,11 +88,14 @@ SurfacePoint surface_point(const Scene& scene, const Rayf& ray_world, const HitI
   if (!is_shape(scene.geometry, ids.object)) return mesh_point(scene, ids, u, v);
   const Affine3d object_from_world = inverse(shape_instance(scene.geometry, ids.object).world_from_object);
   const Vec3d p_world = Vec3d(ray_world.origin) + Vec3d(ray_world.direction) * double(t);
-  return shape_point(scene, ids.object, transform_point(object_from_world, p_world));
+  SurfacePoint s = shape_point(scene, ids.object, int(ids.part), transform_point(object_from_world, p_world));
+  if (!(dot(s.ng_world, s.ng_world) > 0)) s.ng_world = s.ns_world = -ray_world.direction;  // a singular point
+  return s;
 }
 
 SurfacePoint surface_point(const Scene& scene, const Crossing& crossing) noexcept {
-  if (is_shape(scene.geometry, crossing.object)) return shape_point(scene, crossing.object, crossing.p_object);
+  if (is_shape(scene.geometry, crossing.object))
+    return shape_point(scene, crossing.object, int(crossing.part), crossing.p_object);
   const MeshInstance& instance = scene.geometry.mesh_instances[crossing.object];
   const TriangleMesh& part = scene.geometry.meshes[instance.mesh].parts[crossing.part];
   SurfacePoint s;

@@ -132,44 +132,6 @@ TEST(Render, AFlatGroundHasNoAcneAtAnyScale) {
   }
 }
 
-TEST(AcceleratedScene, SpheresAgreeWithBruteForce) {
-  std::mt19937 rng(7);
-  std::uniform_real_distribution<double> u(-1, 1);
-  Geometry geometry;
-  for (int i = 0; i < 60; ++i) {
-    geometry.shapes.push_back(Sphere{float(0.05 + 0.1 * (u(rng) + 1))});
-    const auto v = [&] { return Vec3d{u(rng), u(rng), u(rng)}; };
-    geometry.shape_instances.push_back({uint32_t(i), uint32_t(i), 0, {v(), v(), v(), v() * 2.0}});
-  }
-  const AcceleratedScene accelerated(geometry, {});
-  RayWave wave;
-  wave.resize(20001);  // the last packet is not full
-  for (size_t i = 0; i < wave.size(); ++i)
-    wave.set(
-        i, {{float(4 * u(rng)), float(4 * u(rng)), float(4 * u(rng))}, {float(u(rng)), float(u(rng)), float(u(rng))}});
-  HitWave hits;
-  Lanes<Rgb> visible;
-  accelerated.intersect(wave, Coherence::incoherent, hits);
-  accelerated.transmittance(wave, Coherence::incoherent, visible);
-  for (size_t i = 0; i < wave.size(); ++i) {
-    uint32_t closest = kNone;
-    float t_closest = wave.t_max[i];
-    const Rayf ray = wave.get(i);
-    const Rayd ray_world{Vec3d(ray.origin), Vec3d(ray.direction)};
-    for (uint32_t k = 0; k < geometry.shape_instances.size(); ++k) {
-      const Affine3d object_from_world = inverse(geometry.shape_instances[k].world_from_object);
-      const Crossings c = crossings(std::get<Sphere>(geometry.shapes[k]), transform_ray(object_from_world, ray_world));
-      for (int j = 0; j < c.count; ++j)
-        if (const float t = float(c.t[j]); t >= 0 && t < t_closest) closest = k, t_closest = t;
-    }
-    ASSERT_EQ(hits.object[i], closest) << "ray " << i;
-    if (closest != kNone) {
-      ASSERT_EQ(hits.t[i], t_closest);
-    }
-    ASSERT_EQ(visible[i].r, closest == kNone ? 1.0f : 0.0f);
-  }
-}
-
 TEST(AcceleratedScene, CoherentShadowsAfterIncoherentRaysOnInstancesReturn) {
   // The sequence on which Embree 3.13.5 does not return with 16-wide coherent shadow packets: the test's time limit is
   // the claim.

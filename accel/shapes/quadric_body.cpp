@@ -95,19 +95,18 @@ std::vector<ExactCrossing> open_crossings(const Roots& roots, const Interval& in
 
 }  // namespace
 
-std::vector<ExactCrossing> exact_crossings(const QuadricBody<Rational>& body, bool has_planes, bool has_wall,
-                                           const ExactLine& line) {
+std::vector<ExactCrossing> exact_crossings(const QuadricBody<Rational>& body, BodyParts parts, const ExactLine& line) {
   std::vector<ExactCrossing> out;
   const auto &p = line.origin, &d = line.direction;
   if (sgn(d.x) == 0 && sgn(d.y) == 0 && sgn(d.z) == 0) return out;
   Interval interval;
-  if (has_planes) {
+  if (parts.planes) {
     narrow(interval, p.x, d.x, body.lower.x, body.upper.x, 0);
     narrow(interval, p.y, d.y, body.lower.y, body.upper.y, 1);
     narrow(interval, p.z, d.z, body.lower.z, body.upper.z, 2);
     if (interval.empty || compare(interval.enter->t, interval.leave->t) > 0) return out;
   }
-  if (!has_wall) {
+  if (!parts.wall) {
     add_cut({}, {}, interval, out);
     return out;
   }

@@ -57,25 +57,6 @@ T largest(const Vec3<T>& v) {
   return larger(absolute(v.x), larger(absolute(v.y), absolute(v.z)));
 }
 
-/// The point of the line at `t`, a number taken as exact, as the origin of another line.
-template <class T>
-ObjectLine<T> moved_origin(const ObjectLine<T>& line, const T& t) {
-  const double u = kUnitRoundoff<T>;
-  ObjectLine<T> moved = line;
-  const T size = absolute(t);
-  const auto axis = [&](const T& o, const T& d, const T& oe, const T& de, T& p, T& pe) {
-    p = o + t * d;
-    pe = oe + size * (de + absolute(d) * (3 * u)) + absolute(o) * (3 * u);
-  };
-  axis(line.origin.x, line.direction.x, line.origin_error.x, line.direction_error.x, moved.origin.x,
-       moved.origin_error.x);
-  axis(line.origin.y, line.direction.y, line.origin_error.y, line.direction_error.y, moved.origin.y,
-       moved.origin_error.y);
-  axis(line.origin.z, line.direction.z, line.origin_error.z, line.direction_error.z, moved.origin.z,
-       moved.origin_error.z);
-  return moved;
-}
-
 /// One axis' pair of planes. `steep`: the line crosses them at parameters worth computing.
 template <class T>
 struct Slab {
@@ -326,10 +307,18 @@ template <BodyForm kForm, class T, class N>
   }
 }
 
-/// The same, exactly, ascending. `finite_box`: whether the planes are there (they are not around a sphere). A double
-/// root is entered and left at once; a line within the wall crosses none of it; a zero direction crosses nothing.
-/// Through an edge, the smallest face counts.
-[[nodiscard]] std::vector<ExactCrossing> exact_crossings(const QuadricBody<Rational>& body, bool has_planes,
-                                                         bool has_wall, const ExactLine& line);
+/// What of a body is there: its six planes, its curved wall.
+struct BodyParts {
+  bool planes = true, wall = true;
+};
+
+/// The same, exactly, ascending. A double root is entered and left at once; a line within the wall crosses none of it;
+/// a zero direction crosses nothing. Through an edge, the smallest face counts.
+[[nodiscard]] std::vector<ExactCrossing> exact_crossings(const QuadricBody<Rational>& body, BodyParts parts,
+                                                         const ExactLine& line);
+
+/// The number type in which a body's coefficients serve lines of type T.
+template <class T>
+using CoefficientOf = std::conditional_t<std::is_same_v<T, Quad>, Quad, double>;
 
 }  // namespace alhazen

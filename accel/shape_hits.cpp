@@ -1,0 +1,81 @@
+#include "accel/shape_hits.h"
+
+namespace alhazen {
+namespace {
+
+/// In binary128 only what is truly close to a float's rounding boundary is left in doubt.
+template <class T>
+inline constexpr double kAccuracy = kParameterAccuracy;
+template <>
+inline constexpr double kAccuracy<Quad> = 0x1p-70;
+
+/// Keeps a crossing if it is in range; false where that, or the rounding of t, is not certain.
+template <class T>
+bool keep(const T& t, const T& error, int face, const Rayf& ray, std::vector<ShapeHit>& hits) {
+  if (t + error < T(ray.t_min) || t - error > T(ray.t_max)) return true;
+  if (!(error <= absolute(t) * T(kAccuracy<T>))) return false;
+  const float rounded = float(t);
+  if (rounded >= ray.t_min && rounded <= ray.t_max) hits.push_back({rounded, uint32_t(face)});
+  return true;
+}
+
+template <class T, class S>
+bool try_hits(const S& shape, const ObjectLine<T>& line, const Rayf& ray, std::vector<ShapeHit>& hits) {
+  const LineCrossings<T> found = crossings(shape, line);
+  if (found.doubtful) return false;
+  for (const auto& c : found.at)
+    if (c.present && !keep(c.t, c.error, int(c.face), ray, hits)) return false;
+  return true;
+}
+
+template <class T>
+bool try_hits(const Composite& shape, const ObjectLine<T>& line, const Rayf& ray, std::vector<ShapeHit>& hits) {
+  thread_local std::vector<CompositeCrossing<T>> found;
+  found.clear();
+  if (!append_crossings(shape, line, found)) return false;
+  for (const auto& c : found)
+    if (!keep(c.t, c.error, c.face, ray, hits)) return false;
+  return true;
+}
+
+template <class S>
+void exact_hits(const S& shape, const Affine3d& world_from_object, const Rayf& ray, std::vector<ShapeHit>& hits) {
+  for (const ExactCrossing& c : exact_crossings(shape, exact_line({&world_from_object, 1}, exact_line(ray)))) {
+    const float t = to_float(c.t);
+    if (t >= ray.t_min && t <= ray.t_max) hits.push_back({t, uint32_t(c.face)});
+  }
+}
+
+template <class T>
+Vec3<T> widened(const Vec3f& v) {
+  return {T(v.x), T(v.y), T(v.z)};
+}
+
+}  // namespace
+
+DoubtCounts& doubt_counts() noexcept {
+  thread_local DoubtCounts counts;
+  return counts;
+}
+
+void append_hits(const PlacedShape& placed, const Rayf& ray, std::vector<ShapeHit>& hits) {
+  if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == Vec3f{}) return;
+  const size_t first = hits.size();
+  std::visit(
+      [&](const auto& shape) {
+        const auto line =
+            object_line(placed.object_from_world, widened<double>(ray.origin), widened<double>(ray.direction));
+        if (try_hits<double>(shape, line, ray, hits)) return;
+        hits.resize(first);
+        ++doubt_counts().quad;
+        const LineMap<Quad> map = quad_line_map({placed.world_from_object, 1});
+        if (try_hits<Quad>(shape, object_line(map, widened<Quad>(ray.origin), widened<Quad>(ray.direction)), ray, hits))
+          return;
+        hits.resize(first);
+        ++doubt_counts().exact;
+        exact_hits(shape, *placed.world_from_object, ray, hits);
+      },
+      *placed.shape);
+}
+
+}  // namespace alhazen
