@@ -1,5 +1,6 @@
 #include "accel/accelerated_scene.h"
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -27,6 +28,7 @@ struct AcceleratedScene::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   bool has_instances = false;
+  bool has_filters = false;  // surfaces that let some light through
   int width = 4;
 
   ~Impl() {
@@ -181,6 +183,8 @@ AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter
     : impl_(std::make_unique<Impl>()) {
   Impl& impl = *impl_;
   impl.filter = filter;
+  impl.has_filters =
+      std::any_of(filter.opacity.begin(), filter.opacity.end(), [](Opacity o) { return o != Opacity::opaque; });
   const std::string config = options.threads > 0 ? "threads=" + std::to_string(options.threads) : "";
   impl.device = rtcNewDevice(config.c_str());
   if (!impl.device) throw Error("Embree has no device for this CPU", ExitStatus::internal);
@@ -243,6 +247,8 @@ void AcceleratedScene::transmittance(const RayWave& rays_world, Coherence cohere
                                      Lanes<Rgb>& visible) const noexcept {
   visible.resize(rays_world.size());
   for (size_t i = 0; i < rays_world.size(); ++i) visible[i] = Rgb(1.0f);
+  // Coherent occlusion may show a callback the same surface twice, once for each octant of directions in the packet.
+  if (impl_->has_filters) coherence = Coherence::incoherent;
   const bool hangs =
       embree::kCoherentOccluded16HangsOnInstances && impl_->has_instances && coherence == Coherence::coherent;
   switch (hangs ? std::min(impl_->width, 8) : impl_->width) {

@@ -241,5 +241,39 @@ TYPED_TEST(Shapes, PacketsAgreeWithAPlainLoopOverAllShapes) {
   }
 }
 
+TYPED_TEST(Shapes, EachSurfaceDimsAShadowRayOnce) {
+  Random random(5);
+  Geometry geometry;
+  for (uint32_t k = 0; k < 30; ++k) {
+    geometry.shapes.push_back(random_shape<TypeParam>(random));
+    Affine3d m = random_map(random);
+    const double size = std::cbrt(std::abs(determinant(m)));
+    geometry.shape_instances.push_back({k, k, 0, {m.x / size, m.y / size, m.z / size, random.in_cube(2)}});
+  }
+  const Opacity opacity[] = {Opacity::transparent};
+  SurfaceFilter filter{opacity};
+  filter.transmittance = [](const void*, const Crossing&) noexcept { return Rgb(0.5f, 0.75f, 1.0f); };
+  const AcceleratedScene accelerated(geometry, filter);
+  RayWave wave;
+  wave.resize(2048);
+  const Vec3f light{0, 4, 0};
+  for (size_t i = 0; i < wave.size(); ++i) {  // side by side, of four octants, towards one point
+    const Vec3f origin{float(i % 64) / 16 - 2, -3, float(i / 64) / 8 - 2};
+    wave.set(i, {origin, light - origin, 0, 1});
+  }
+  Lanes<Rgb> visible;
+  for (const Coherence coherence : {Coherence::coherent, Coherence::incoherent}) {
+    accelerated.transmittance(wave, coherence, visible);
+    for (size_t i = 0; i < wave.size(); ++i) {
+      std::vector<ShapeHit> found;
+      for (uint32_t k = 0; k < geometry.shape_instances.size(); ++k) {
+        const Affine3d& m = geometry.shape_instances[k].world_from_object;
+        append_hits({line_map(m), &m, &geometry.shapes[k]}, wave.get(i), found);
+      }
+      ASSERT_NEAR(visible[i].r, std::pow(0.5, found.size()), 1e-6) << "ray " << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace alhazen
