@@ -117,6 +117,13 @@ void reject([[maybe_unused]] const CallbackArguments* arguments, [[maybe_unused]
 #endif
 }
 
+/// The lane's hit has been written.
+inline void confirm([[maybe_unused]] const RTCIntersectFunctionNArguments* arguments, [[maybe_unused]] unsigned lane) {
+#if ALHAZEN_EMBREE_MAJOR >= 4
+  arguments->valid[lane] = -1;
+#endif
+}
+
 /// The ray hits the primitive at `t`, closer than whatever the lane held.
 inline void accept(const RTCIntersectFunctionNArguments* arguments, unsigned lane, float t) {
   const unsigned n = arguments->N;
@@ -126,9 +133,7 @@ inline void accept(const RTCIntersectFunctionNArguments* arguments, unsigned lan
   RTCHitN_geomID(hit, n, lane) = arguments->geomID;
   RTCHitN_primID(hit, n, lane) = arguments->primID;
   RTCHitN_instID(hit, n, lane, 0) = arguments->context->instID[0];
-#if ALHAZEN_EMBREE_MAJOR >= 4
-  arguments->valid[lane] = -1;
-#endif
+  confirm(arguments, lane);
 }
 
 /// The primitive blocks the ray.

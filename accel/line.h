@@ -64,8 +64,8 @@ struct ExactCrossing {
   int face = kWallFace;
 };
 
-/// As accurate as a parameter must be to be rounded to float: errors of 2^-37 relative put the rounding on the wrong
-/// side once in 2^12 of the cases that are as bad as this, and those are rare.
-inline constexpr double kParameterAccuracy = 0x1p-37;
+/// As accurate as a parameter must be to be rounded to float: error bounds of 2^-34 relative. True errors are mostly
+/// below a tenth of their bounds, so that even the worst that pass round to the wrong side less than once in 2^12.
+inline constexpr double kParameterAccuracy = 0x1p-34;
 
 }  // namespace alhazen

@@ -1,5 +1,7 @@
 #include "accel/line_map.h"
 
+#include <cmath>
+
 namespace alhazen {
 namespace {
 
@@ -15,6 +17,18 @@ Vec3<N> cross_magnitude(const Vec3<N>& a, const Vec3<N>& b) {
   return {p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x};
 }
 
+/// One entry, a power of two: multiplying by the row does not round, and its inverse was found without rounding.
+template <class N>
+bool is_exact(const Vec3<N>& row) {
+  int entries = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    int exponent;
+    if (const double entry = double(row[axis]); entry != 0)
+      entries += std::abs(std::frexp(entry, &exponent)) == 0.5 && N(entry) == row[axis] ? 1 : 2;
+  }
+  return entries == 1;
+}
+
 template <class N>
 N sum(const Vec3<N>& v) {
   return v.x + v.y + v.z;
@@ -27,18 +41,21 @@ LineMap<N> inverted(const Affine3<N>& m, N entry_error) {
   const Vec3<N> cx = cross(m.y, m.z), cy = cross(m.z, m.x), cz = cross(m.x, m.y);
   const Vec3<N> ex = cross_magnitude(m.y, m.z), ey = cross_magnitude(m.z, m.x), ez = cross_magnitude(m.x, m.y);
   const N det = dot(m.x, cx), det_error = dot(magnitudes(m.x), ex) * N(8 * u);
-  const N size = absolute(det), relative = det_error / size;
+  const N size = absolute(det), det_relative = det_error / size;
   LineMap<N> map{cx / det, cy / det, cz / det, m.origin, {}, {}};
-  const auto row_error = [&](const Vec3<N>& row, const Vec3<N>& e) {
-    return (sum(e) * N(4 * u) / size + sum(magnitudes(row)) * relative) * N(1.25);
+  const bool map_is_exact = entry_error == 0 && is_exact(map.row_x) && is_exact(map.row_y) && is_exact(map.row_z);
+  const N columns = sum(magnitudes(map.row_x)) + sum(magnitudes(map.row_y)) + sum(magnitudes(map.row_z));
+  // A row's own error for each unit of the vector; a subtraction, a rounded row and a sum of three products on top.
+  const auto relative = [&](const Vec3<N>& row, const Vec3<N>& e) {
+    const N row_size = sum(magnitudes(row));
+    if (map_is_exact) return row_size * N(u);
+    const N row_error =
+        (sum(e) * N(4 * u) / size + row_size * det_relative) * N(1.25) + row_size * entry_error * columns * 2;
+    return row_error + row_size * N(6 * u);
   };
-  map.row_error = {row_error(map.row_x, ex), row_error(map.row_y, ey), row_error(map.row_z, ez)};
-  if (entry_error > 0) {
-    const N columns = sum(magnitudes(map.row_x)) + sum(magnitudes(map.row_y)) + sum(magnitudes(map.row_z));
-    const auto spread = [&](const Vec3<N>& row) { return sum(magnitudes(row)) * entry_error * columns * 2; };
-    map.row_error = map.row_error + Vec3<N>{spread(map.row_x), spread(map.row_y), spread(map.row_z)};
-  }
-  if (!(relative < N(0.125))) map.row_error = {N(HUGE_VAL), N(HUGE_VAL), N(HUGE_VAL)};  // everything is doubtful
+  map.relative_error = {relative(map.row_x, ex), relative(map.row_y, ey), relative(map.row_z, ez)};
+  const N inf = N(HUGE_VAL);
+  if (!(det_relative < N(0.125))) map.relative_error = {inf, inf, inf};  // everything is doubtful
   return map;
 }
 
@@ -61,24 +78,25 @@ LineMap<Quad> quad_line_map(std::span<const Affine3d> chain) {
   const Quad rounding = chain.size() > 1 ? Quad(8 * kUnitRoundoff<Quad>) * Quad(double(chain.size())) : Quad(0);
   LineMap<Quad> map = inverted(product, entries * rounding);
   const Quad center_error = origins * rounding;
-  const auto mapped = [&](const Vec3<Quad>& row, Quad row_error) {
-    return (sum(magnitudes(row)) + row_error * 3) * center_error;
+  const auto mapped = [&](const Vec3<Quad>& row, Quad relative) {
+    return (sum(magnitudes(row)) + relative) * center_error;
   };
-  map.origin_error = {mapped(map.row_x, map.row_error.x), mapped(map.row_y, map.row_error.y),
-                      mapped(map.row_z, map.row_error.z)};
+  map.origin_error = {mapped(map.row_x, map.relative_error.x), mapped(map.row_y, map.relative_error.y),
+                      mapped(map.row_z, map.relative_error.z)};
   return map;
 }
 
 LineMap<double> line_map(std::span<const Affine3d> chain) {
   if (chain.size() == 1) return line_map(chain.front());
   const LineMap<Quad> fine = quad_line_map(chain);
-  LineMap<double> map{Vec3d(fine.row_x),  Vec3d(fine.row_y),     Vec3d(fine.row_z),
-                      Vec3d(fine.center), Vec3d(fine.row_error), Vec3d(fine.origin_error)};
-  // What rounding the centre costs; the rows' own rounding is counted wherever they are used.
-  const Vec3d lost = abs(map.center) * 0x1p-53;
+  LineMap<double> map{Vec3d(fine.row_x),  Vec3d(fine.row_y),          Vec3d(fine.row_z),
+                      Vec3d(fine.center), Vec3d(fine.relative_error), Vec3d(fine.origin_error)};
+  // What rounding the rows and the centre costs, and the sums in double.
+  const double u = kUnitRoundoff<double>;
+  const Vec3d rows{sum(abs(map.row_x)), sum(abs(map.row_y)), sum(abs(map.row_z))}, lost = abs(map.center) * u;
   const Vec3d cost{dot(abs(map.row_x), lost), dot(abs(map.row_y), lost), dot(abs(map.row_z), lost)};
+  map.relative_error = map.relative_error * 1.01 + rows * (6 * u);
   map.origin_error = (map.origin_error + cost) * 1.01;
-  map.row_error = map.row_error * 1.01;
   return map;
 }
 

@@ -12,6 +12,7 @@ namespace alhazen {
 namespace {
 
 constexpr double kLargestCoordinate = 1.844e18;  // beyond it, Embree drops primitives without a word
+// The functions on lanes are flattened: a call for each operation on vectors would cost more than the operation.
 constexpr unsigned kLanes = unsigned(DoubleLanes::size());
 
 /// The largest float not above, the smallest not below.
@@ -118,12 +119,84 @@ PacketLanes load_lanes(RTCRayN* ray, const int* valid, unsigned n, unsigned firs
   return lanes;
 }
 
-/// Calls f(lane) for each lane of the packet in `mask`.
-template <class F>
-void for_each_lane(const LaneMask& mask, unsigned first, const F& f) {
-  for (unsigned i = 0; i < kLanes; ++i)
-    if (mask[i]) f(first + i, i);
+int active_lanes(const int* valid, unsigned n) {
+  int count = 0;
+  for (unsigned i = 0; i < n; ++i) count -= valid[i];
+  return count;
 }
+
+using LaneFlags = std::array<bool, kLanes>;
+
+LaneFlags flags_of(const LaneMask& mask) {
+  LaneFlags flags;
+  mask.copy_to(flags.data(), std::experimental::element_aligned);
+  return flags;
+}
+
+using LaneFloats = std::array<float, kLanes>;
+
+LaneFloats floats_of(const DoubleLanes& x) {
+  LaneFloats floats;
+  x.copy_to(floats.data(), std::experimental::element_aligned);
+  return floats;
+}
+
+/// Takes the hits of lanes that held nothing as near. A plain loop over rows, which compilers turn into masked stores.
+void take_lanes(const RTCIntersectFunctionNArguments* args, unsigned first, const Nearest<DoubleLanes>& found,
+                const LaneFlags& hits) {
+  const unsigned n = args->N, count = std::min(kLanes, n - first);
+  const LaneFloats t = floats_of(found.t), face = floats_of(found.face);
+  RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, n);
+  float* t_far = &RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, n), n, first);
+  float *u = &RTCHitN_u(hit, n, first), *v = &RTCHitN_v(hit, n, first);
+  unsigned *geometry = &RTCHitN_geomID(hit, n, first), *primitive = &RTCHitN_primID(hit, n, first),
+           *instance = &RTCHitN_instID(hit, n, first, 0);
+  const unsigned geometry_id = args->geomID, primitive_id = args->primID, instance_id = args->context->instID[0];
+  for (unsigned i = 0; i < count; ++i) {
+    t_far[i] = hits[i] ? t[i] : t_far[i];
+    u[i] = hits[i] ? face[i] : u[i];
+    v[i] = hits[i] ? 0 : v[i];
+    geometry[i] = hits[i] ? geometry_id : geometry[i];
+    primitive[i] = hits[i] ? primitive_id : primitive[i];
+    instance[i] = hits[i] ? instance_id : instance[i];
+  }
+  for (unsigned i = 0; i < count; ++i)
+    if (hits[i]) embree::confirm(args, first + i);
+}
+
+template <class S>
+[[gnu::flatten]] void intersect_lanes(const RTCIntersectFunctionNArguments* args, const ShapeGroup& group,
+                                      const ShapeGroup::Member& member, unsigned first) {
+  const PacketLanes lanes = load_lanes(RTCRayHitN_RayN(args->rayhit, args->N), args->valid, args->N, first);
+  if (!any_of(lanes.active)) return;
+  const auto line = object_line(member.placed.object_from_world, lanes.origin, lanes.direction);
+  Nearest<DoubleLanes> found = nearest(crossings(std::get<S>(*member.placed.shape), line), lanes.t_min, lanes.t_max);
+  found.hit = found.hit && lanes.active && !found.doubtful;
+  if (any_of(found.hit && found.t == lanes.t_max)) {  // perhaps a tie: one by one
+    const LaneFlags hits = flags_of(found.hit);
+    for (unsigned i = 0; i < kLanes; ++i)
+      if (hits[i]) take(args, first + i, {float(found.t[i]), uint32_t(double(found.face[i]))});
+  } else if (any_of(found.hit)) {
+    take_lanes(args, first, found, flags_of(found.hit));
+  }
+  if (!any_of(found.doubtful && lanes.active)) return;
+  const LaneFlags doubtful = flags_of(found.doubtful && lanes.active);
+  for (unsigned i = 0; i < kLanes; ++i)
+    if (doubtful[i]) intersect_lane(args, group, member, first + i);
+}
+
+/// One ray in double; the doubtful go the long way.
+template <class S>
+[[gnu::flatten]] void intersect_quickly(const RTCIntersectFunctionNArguments* args, const ShapeGroup& group,
+                                        const ShapeGroup::Member& member, unsigned i) {
+  const Rayf ray = ray_of(RTCRayHitN_RayN(args->rayhit, args->N), args->N, i);
+  const auto line = object_line(member.placed.object_from_world, Vec3d(ray.origin), Vec3d(ray.direction));
+  const auto found = nearest(crossings(std::get<S>(*member.placed.shape), line), double(ray.t_min), double(ray.t_max));
+  if (found.doubtful) return intersect_lane(args, group, member, i);
+  if (found.hit) take(args, i, {float(found.t), uint32_t(found.face)});
+}
+
+constexpr int kFewLanes = 2;  // no more than these go one by one
 
 template <class S>
 void intersect_group(const RTCIntersectFunctionNArguments* args) {
@@ -131,28 +204,46 @@ void intersect_group(const RTCIntersectFunctionNArguments* args) {
   const ShapeGroup::Member& member = group.members[args->primID];
   for (unsigned i = 0; i < args->N; ++i)
     if (args->valid[i]) embree::reject(args, i);  // until a crossing is found to count
-  const auto one_by_one = [&] {
-    for (unsigned i = 0; i < args->N; ++i)
-      if (args->valid[i]) intersect_lane(args, group, member, i);
-  };
-  if constexpr (std::is_same_v<S, Composite>) {
-    one_by_one();
-  } else {
-    if (args->N == 1 || member.opacity == Opacity::cutout) return one_by_one();
-    const S& shape = std::get<S>(*member.placed.shape);
-    RTCRayN* ray = RTCRayHitN_RayN(args->rayhit, args->N);
-    for (unsigned first = 0; first < args->N; first += kLanes) {
-      const PacketLanes lanes = load_lanes(ray, args->valid, args->N, first);
-      if (!any_of(lanes.active)) continue;
-      const auto line = object_line(member.placed.object_from_world, lanes.origin, lanes.direction);
-      const NearestLanes found = nearest(crossings(shape, line), lanes.t_min, lanes.t_max);
-      for_each_lane(lanes.active && found.hit && !found.doubtful, first, [&](unsigned lane, unsigned i) {
-        take(args, lane, {float(found.t[i]), uint32_t(double(found.face[i]))});
-      });
-      for_each_lane(lanes.active && found.doubtful, first,
-                    [&](unsigned lane, unsigned) { intersect_lane(args, group, member, lane); });
+  if constexpr (!std::is_same_v<S, Composite>) {
+    if (member.opacity != Opacity::cutout) {
+      if (active_lanes(args->valid, args->N) <= kFewLanes) {
+        for (unsigned i = 0; i < args->N; ++i)
+          if (args->valid[i]) intersect_quickly<S>(args, group, member, i);
+      } else {
+        for (unsigned first = 0; first < args->N; first += kLanes) intersect_lanes<S>(args, group, member, first);
+      }
+      return;
     }
   }
+  for (unsigned i = 0; i < args->N; ++i)
+    if (args->valid[i]) intersect_lane(args, group, member, i);
+}
+
+template <class S>
+[[gnu::flatten]] void occlude_lanes(const RTCOccludedFunctionNArguments* args, const ShapeGroup& group,
+                                    const ShapeGroup::Member& member, unsigned first) {
+  const PacketLanes lanes = load_lanes(args->ray, args->valid, args->N, first);
+  if (!any_of(lanes.active)) return;
+  const auto line = object_line(member.placed.object_from_world, lanes.origin, lanes.direction);
+  const Blocked<DoubleLanes> found =
+      blocked(crossings(std::get<S>(*member.placed.shape), line), lanes.t_min, lanes.t_max);
+  const LaneFlags blocks = flags_of(found.blocked && lanes.active);
+  for (unsigned i = 0; i < kLanes; ++i)
+    if (blocks[i]) embree::accept(args, first + i);
+  if (!any_of(found.doubtful && lanes.active)) return;
+  const LaneFlags doubtful = flags_of(found.doubtful && lanes.active);
+  for (unsigned i = 0; i < kLanes; ++i)
+    if (doubtful[i]) occlude_lane(args, group, member, first + i);
+}
+
+template <class S>
+[[gnu::flatten]] void occlude_quickly(const RTCOccludedFunctionNArguments* args, const ShapeGroup& group,
+                                      const ShapeGroup::Member& member, unsigned i) {
+  const Rayf ray = ray_of(args->ray, args->N, i);
+  const auto line = object_line(member.placed.object_from_world, Vec3d(ray.origin), Vec3d(ray.direction));
+  const auto found = blocked(crossings(std::get<S>(*member.placed.shape), line), double(ray.t_min), double(ray.t_max));
+  if (found.doubtful) return occlude_lane(args, group, member, i);
+  if (found.blocked) embree::accept(args, i);
 }
 
 template <class S>
@@ -161,29 +252,19 @@ void occlude_group(const RTCOccludedFunctionNArguments* args) {
   const ShapeGroup::Member& member = group.members[args->primID];
   for (unsigned i = 0; i < args->N; ++i)
     if (args->valid[i]) embree::reject(args, i);
-  const auto one_by_one = [&] {
-    for (unsigned i = 0; i < args->N; ++i)
-      if (args->valid[i]) occlude_lane(args, group, member, i);
-  };
-  if constexpr (std::is_same_v<S, Composite>) {
-    one_by_one();
-  } else {
-    if (args->N == 1 || member.opacity != Opacity::opaque) return one_by_one();
-    const S& shape = std::get<S>(*member.placed.shape);
-    Rgb* visible = embree::query_of<WaveQuery>(args).visible;
-    for (unsigned first = 0; first < args->N; first += kLanes) {
-      const PacketLanes lanes = load_lanes(args->ray, args->valid, args->N, first);
-      if (!any_of(lanes.active)) continue;
-      const auto line = object_line(member.placed.object_from_world, lanes.origin, lanes.direction);
-      const BlockedLanes found = blocked(crossings(shape, line), lanes.t_min, lanes.t_max);
-      for_each_lane(lanes.active && found.blocked, first, [&](unsigned lane, unsigned) {
-        visible[RTCRayN_id(args->ray, args->N, lane)] = Rgb(0.0f);
-        embree::accept(args, lane);
-      });
-      for_each_lane(lanes.active && found.doubtful, first,
-                    [&](unsigned lane, unsigned) { occlude_lane(args, group, member, lane); });
+  if constexpr (!std::is_same_v<S, Composite>) {
+    if (member.opacity == Opacity::opaque) {  // what blocks need not be counted
+      if (active_lanes(args->valid, args->N) <= kFewLanes) {
+        for (unsigned i = 0; i < args->N; ++i)
+          if (args->valid[i]) occlude_quickly<S>(args, group, member, i);
+      } else {
+        for (unsigned first = 0; first < args->N; first += kLanes) occlude_lanes<S>(args, group, member, first);
+      }
+      return;
     }
   }
+  for (unsigned i = 0; i < args->N; ++i)
+    if (args->valid[i]) occlude_lane(args, group, member, i);
 }
 
 struct Callbacks {

@@ -31,31 +31,34 @@ struct DoubtCounts {
 /// nothing.
 ///
 /// accuracy  hit or miss, order and face are those of exact arithmetic on the given numbers; t is correctly rounded but
-///           where double cannot tell (an error below 2^-37 relative): then one of the two floats beside it.
+///           where double cannot tell (an error below 2^-34 relative): then one of the two floats beside it.
 /// cost      double, then binary128 for the doubtful, then rational numbers for what is left: see `doubt_counts`.
 void append_hits(const PlacedShape& placed, const Rayf& ray_world, std::vector<ShapeHit>& hits);
 
-/// The first hit in range for a packet's lanes.
-struct NearestLanes {
-  DoubleLanes t, face;     // t as rounded to float
-  LaneMask hit, doubtful;  // doubtful lanes: ask `append_hits`
+/// The first hit in range, without leaving T: where `doubtful`, ask `append_hits`.
+template <class T>
+struct Nearest {
+  T t, face;  // t as rounded to float
+  MaskOf<T> hit, doubtful;
 };
 
+inline double rounded_to_float(double x) { return double(float(x)); }
 inline DoubleLanes rounded_to_float(const DoubleLanes& x) {
   std::array<float, DoubleLanes::size()> buffer;
   x.copy_to(buffer.data(), std::experimental::element_aligned);
   return DoubleLanes(buffer.data(), std::experimental::element_aligned);
 }
 
-[[nodiscard]] inline NearestLanes nearest(const LineCrossings<DoubleLanes>& crossings, const DoubleLanes& t_min,
-                                          const DoubleLanes& t_max) {
-  NearestLanes found{DoubleLanes(0), DoubleLanes(0), LaneMask(false), crossings.doubtful};
+template <class T>
+[[nodiscard]] Nearest<T> nearest(const LineCrossings<T>& crossings, const T& t_min, const T& t_max) {
+  using Mask = MaskOf<T>;
+  Nearest<T> found{T(0), T(0), Mask(false), crossings.doubtful};
   for (const auto& c : crossings.at) {
-    const LaneMask candidate =
+    const Mask candidate =
         c.present && !found.hit && !found.doubtful && !(c.t + c.error < t_min) && !(c.t - c.error > t_max);
     found.doubtful = found.doubtful || (candidate && !(c.error <= absolute(c.t) * kParameterAccuracy));
-    const DoubleLanes t = rounded_to_float(c.t);
-    const LaneMask hit = candidate && !found.doubtful && t >= t_min && t <= t_max;
+    const T t = rounded_to_float(c.t);
+    const Mask hit = candidate && !found.doubtful && t >= t_min && t <= t_max;
     found.t = select(hit, t, found.t), found.face = select(hit, c.face, found.face);
     found.hit = found.hit || hit;
   }
@@ -63,12 +66,13 @@ inline DoubleLanes rounded_to_float(const DoubleLanes& x) {
 }
 
 /// Whether anything is hit in range: no parameter need be accurate.
-struct BlockedLanes {
-  LaneMask blocked, doubtful;
+template <class T>
+struct Blocked {
+  MaskOf<T> blocked, doubtful;
 };
-[[nodiscard]] inline BlockedLanes blocked(const LineCrossings<DoubleLanes>& crossings, const DoubleLanes& t_min,
-                                          const DoubleLanes& t_max) {
-  BlockedLanes found{LaneMask(false), crossings.doubtful};
+template <class T>
+[[nodiscard]] Blocked<T> blocked(const LineCrossings<T>& crossings, const T& t_min, const T& t_max) {
+  Blocked<T> found{MaskOf<T>(false), crossings.doubtful};
   for (const auto& c : crossings.at) {
     found.blocked = found.blocked || (c.present && c.t - c.error > t_min && c.t + c.error < t_max);
     found.doubtful = found.doubtful || (c.present && !(c.t + c.error < t_min) && !(c.t - c.error > t_max));

@@ -11,7 +11,6 @@ namespace alhazen {
 
 /// How much of the general case a kind of shape needs. Lanes pay only for what is there.
 enum class BodyForm {
-  sphere,      // x² + y² + z² + j, no box
   revolution,  // x² + z² + b y² + 2 h y + j between two planes y = const
   box,         // no wall
   general,     // all ten coefficients and all six planes
@@ -118,7 +117,6 @@ void decide_parallel(const Slab<T>& slab, const T& reach, SlabInterval<T>& inter
 template <class T, BodyForm kForm, class N>
 SlabInterval<T> slab_interval(const QuadricBody<N>& body, const ObjectLine<T>& line) {
   SlabInterval<T> interval;
-  if constexpr (kForm == BodyForm::sphere) return interval;
   const Slab<T> x{line.origin.x,
                   line.direction.x,
                   line.origin_error.x,
@@ -168,10 +166,7 @@ ErrorQuadratic<T> quadratic_along(const QuadricBody<N>& q, const ObjectLine<T>& 
           d_error = largest(line.direction_error);
   ErrorQuadratic<T> r;
   double form_size, linear_size, j_size = std::abs(double(q.j));
-  if constexpr (kForm == BodyForm::sphere) {
-    r.a = dot(d, d), r.b = dot(p, d), r.c = dot(p, p) + T(q.j);
-    form_size = 3, linear_size = 0;
-  } else if constexpr (kForm == BodyForm::revolution) {
+  if constexpr (kForm == BodyForm::revolution) {
     const T b(q.b), h(q.h);
     r.a = d.x * d.x + d.z * d.z + b * (d.y * d.y);
     r.b = p.x * d.x + p.z * d.z + (b * p.y + h) * d.y;
@@ -227,6 +222,63 @@ QuadraticRoots<T> roots(const ErrorQuadratic<T>& q, const T& reach) {
   return r;
 }
 
+/// Puts crossings of the local line into a list that counts from the original line's origin, `t0` before it.
+template <class T>
+struct CrossingWriter {
+  LineCrossings<T>& out;
+  T t0;
+
+  void operator()(size_t k, const T& s, const T& error, const T& face, const MaskOf<T>& present) const {
+    out.at[k] = {t0 + s, error + (absolute(t0) + absolute(s)) * (2 * kUnitRoundoff<T>), face, present};
+  }
+};
+
+/// Whether a root and a plane lie too close together to be told apart.
+template <class T>
+MaskOf<T> meets_rim(const QuadraticRoots<T>& root, const SlabInterval<T>& slab) {
+  const auto tied = [](const T& a, const T& a_error, const T& b, const T& b_error) {
+    return !(absolute(a - b) > a_error + b_error);
+  };
+  return tied(root.enter, root.enter_error, slab.enter, slab.enter_error) ||
+         tied(root.enter, root.enter_error, slab.leave, slab.leave_error) ||
+         tied(root.leave, root.leave_error, slab.enter, slab.enter_error) ||
+         tied(root.leave, root.leave_error, slab.leave, slab.leave_error);
+}
+
+/// The wall alone: those roots that lie within the box.
+template <class T>
+void write_open(const QuadraticRoots<T>& root, const SlabInterval<T>& slab, const CrossingWriter<T>& write) {
+  const auto between = root.enter < root.leave, exist = root.exist && !slab.empty;
+  const auto within = [&](const T& s) { return exist && s > slab.enter && s < slab.leave; };
+  const auto enter_there = within(root.enter), leave_there = within(root.leave);
+  const T wall(kWallFace);
+  write(0, select(between, root.enter, root.leave), select(between, root.enter_error, root.leave_error), wall,
+        (between && enter_there) || (!between && leave_there));
+  write(1, select(between, root.leave, root.enter), select(between, root.leave_error, root.enter_error), wall,
+        (between && leave_there) || (!between && enter_there));
+}
+
+/// The closed body: between the roots one interval, outside of them two; without roots all of the box or nothing.
+template <class T>
+void write_solid(const QuadraticRoots<T>& root, const SlabInterval<T>& slab, const MaskOf<T>& inside_without_roots,
+                 const CrossingWriter<T>& write) {
+  const auto between = root.enter < root.leave;
+  const auto there = !slab.empty && (root.exist || inside_without_roots);
+  const auto late = root.enter > slab.enter, from_root = root.exist && between && late;
+  const auto to_root = root.exist && root.leave < slab.leave;
+  const T wall(kWallFace);
+  const T first = select(from_root, root.enter, slab.enter), last = select(to_root, root.leave, slab.leave);
+  const auto first_there = there && first < last;
+  write(0, first, select(from_root, root.enter_error, slab.enter_error), select(from_root, wall, slab.enter_face),
+        first_there);
+  write(1, last, select(to_root, root.leave_error, slab.leave_error), select(to_root, wall, slab.leave_face),
+        first_there);
+  const T again = select(late, root.enter, slab.enter);
+  const auto again_there = there && root.exist && !between && again < slab.leave;
+  write(2, again, select(late, root.enter_error, slab.enter_error), select(late, wall, slab.enter_face), again_there);
+  write(3, slab.leave, slab.leave_error, slab.leave_face, again_there);
+}
+
 }  // namespace quadric_detail
 
 /// Where a line meets the body's surface. Closed bodies: entered and left in turns, with the face of each; open ones:
@@ -238,73 +290,28 @@ QuadraticRoots<T> roots(const ErrorQuadratic<T>& q, const T& reach) {
 template <BodyForm kForm, class T, class N>
 [[nodiscard]] LineCrossings<T> body_crossings(const QuadricBody<N>& body, const ObjectLine<T>& line) {
   using namespace quadric_detail;
-  using Mask = MaskOf<T>;
   LineCrossings<T> out;
   // Count parameters from the point nearest to the body's centre: there, nothing large cancels.
-  T t0;
-  if constexpr (kForm == BodyForm::sphere) {
-    t0 = -(dot(line.origin, line.direction) / dot(line.direction, line.direction));
-  } else {
-    const Vec3<T> center{T((body.lower.x + body.upper.x) * 0.5), T((body.lower.y + body.upper.y) * 0.5),
-                         T((body.lower.z + body.upper.z) * 0.5)};
-    t0 = dot(center - line.origin, line.direction) / dot(line.direction, line.direction);
-  }
+  const Vec3<T> center{T((body.lower.x + body.upper.x) * 0.5), T((body.lower.y + body.upper.y) * 0.5),
+                       T((body.lower.z + body.upper.z) * 0.5)};
+  const T t0 = dot(center - line.origin, line.direction) / dot(line.direction, line.direction);
   const ObjectLine<T> local = moved_origin(line, t0);
   const SlabInterval<T> slab = slab_interval<T, kForm>(body, local);
-  const Mask there = !slab.empty;
-  const auto add = [&](int k, const T& s, const T& error, const T& face, const Mask& present) {
-    out.at[size_t(k)] = {t0 + s, error + (absolute(t0) + absolute(s)) * (2 * kUnitRoundoff<T>), face, present};
-  };
+  const CrossingWriter<T> write{out, t0};
   out.doubtful = slab.doubtful;
   if constexpr (kForm == BodyForm::box) {
-    add(0, slab.enter, slab.enter_error, slab.enter_face, there);
-    add(1, slab.leave, slab.leave_error, slab.leave_face, there);
-    return out;
+    write(0, slab.enter, slab.enter_error, slab.enter_face, !slab.empty);
+    write(1, slab.leave, slab.leave_error, slab.leave_face, !slab.empty);
   } else {
-    const T wall(kWallFace);
     const ErrorQuadratic<T> quadratic = quadratic_along<T, kForm>(body, local);
     const QuadraticRoots<T> root = roots(quadratic, reach_of(slab));
-    out.doubtful = out.doubtful || (there && root.doubtful);
-    const Mask between = root.enter < root.leave;  // f < 0 between the roots; else outside of them
-    if constexpr (kForm == BodyForm::sphere) {
-      add(0, root.enter, root.enter_error, wall, root.exist);
-      add(1, root.leave, root.leave_error, wall, root.exist);
-      return out;
-    } else {
-      const auto tied = [](const T& a, const T& b, const T& error) { return !(absolute(a - b) > error); };
-      const Mask rim = tied(root.enter, slab.enter, root.enter_error + slab.enter_error) ||
-                       tied(root.enter, slab.leave, root.enter_error + slab.leave_error) ||
-                       tied(root.leave, slab.enter, root.leave_error + slab.enter_error) ||
-                       tied(root.leave, slab.leave, root.leave_error + slab.leave_error);
-      out.doubtful = out.doubtful || (there && root.exist && rim);
-      if (!body.solid) {
-        const Mask enter_there = there && root.exist && (root.enter > slab.enter) && (root.enter < slab.leave);
-        const Mask leave_there = there && root.exist && (root.leave > slab.enter) && (root.leave < slab.leave);
-        add(0, select(between, root.enter, root.leave), select(between, root.enter_error, root.leave_error), wall,
-            (between && enter_there) || (!between && leave_there));
-        add(1, select(between, root.leave, root.enter), select(between, root.leave_error, root.enter_error), wall,
-            (between && leave_there) || (!between && enter_there));
-        return out;
-      }
-      // Between the roots one interval, outside of them two, without roots all or nothing.
-      const Mask all = !root.exist && (quadratic.c < T(0)), whole = there && (root.exist || all);
-      const Mask from_root = root.exist && between && (root.enter > slab.enter);
-      const Mask to_root = root.exist && (root.leave < slab.leave);
-      const T first = select(from_root, root.enter, slab.enter), last = select(to_root, root.leave, slab.leave);
-      const Mask first_there = whole && (first < last);
-      add(0, first, select(from_root, root.enter_error, slab.enter_error), select(from_root, wall, slab.enter_face),
-          first_there);
-      add(1, last, select(to_root, root.leave_error, slab.leave_error), select(to_root, wall, slab.leave_face),
-          first_there);
-      const Mask again_from_root = root.enter > slab.enter;
-      const T again = select(again_from_root, root.enter, slab.enter);
-      const Mask again_there = whole && root.exist && !between && (again < slab.leave);
-      add(2, again, select(again_from_root, root.enter_error, slab.enter_error),
-          select(again_from_root, wall, slab.enter_face), again_there);
-      add(3, slab.leave, slab.leave_error, slab.leave_face, again_there);
-      return out;
-    }
+    out.doubtful = out.doubtful || (!slab.empty && (root.doubtful || (root.exist && meets_rim(root, slab))));
+    if (body.solid)
+      write_solid(root, slab, !root.exist && quadratic.c < T(0), write);
+    else
+      write_open(root, slab, write);
   }
+  return out;
 }
 
 /// What of a body is there: its six planes, its curved wall.
