@@ -1,4 +1,5 @@
-// Our spheres (user geometry, exact to a rounding) beside Embree's own (SPHERE_POINT), one thread, the same packets.
+// Our spheres (user geometry, exact to a rounding), also as general quadrics, beside Embree's own (SPHERE_POINT), one
+// thread, the same packets.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -16,13 +17,14 @@ namespace {
 
 constexpr int kImageSize = 512;  // pixels a side; a multiple of the camera wave's blocks
 
-/// A field of spheres in both forms, and the three kinds of rays. Built when first asked for and kept, since the
-/// largest takes a second.
+/// A field of spheres in Embree's form and one of ours, and the three kinds of rays. Built when first asked for and
+/// kept, since the largest takes a second.
 struct Field {
-  explicit Field(int count)
-      : geometry(sphere_field(count)),
+  Field(int count, const std::string& form)
+      : spheres(sphere_field(count)),
+        geometry(form == "quadric" ? as_quadrics(spheres) : spheres),
         ours(geometry, {}),
-        embree(geometry),
+        embree(spheres),
         camera(camera_wave(framing_camera(world_bounds(geometry), 1), kImageSize)) {
     HitWave hits;
     ours.intersect(camera, Coherence::coherent, hits);
@@ -30,48 +32,48 @@ struct Field {
     scattered = scattered_wave(camera, hits);
   }
 
-  Geometry geometry;
+  Geometry spheres, geometry;
   AcceleratedScene ours;
   EmbreeBaseline embree;
   RayWave camera, shadow, scattered;
 };
 
-const Field& field(int count) {
-  static std::map<int, std::unique_ptr<Field>> fields;
-  auto& slot = fields[count];
-  if (!slot) slot = std::make_unique<Field>(count);
+const Field& field(int count, const std::string& form) {
+  static std::map<std::pair<int, std::string>, std::unique_ptr<Field>> fields;
+  auto& slot = fields[{count, form}];
+  if (!slot) slot = std::make_unique<Field>(count, form);
   return *slot;
 }
 
 using Rays = RayWave Field::*;
 
-void register_closest_hit(const std::string& kind, int count, Rays rays, Coherence coherence) {
-  const std::string what = "intersect/sphere/", how = "/" + kind + "/" + std::to_string(count);
+void register_closest_hit(const std::string& form, const std::string& kind, int count, Rays rays, Coherence coherence) {
+  const std::string what = "intersect/" + form + "/", how = "/" + kind + "/" + std::to_string(count);
   register_pair({what + "embree_builtin" + how, what + "user_geometry" + how, "Mray/s",
                  [=] {
-                   const Field& f = field(count);
+                   const Field& f = field(count, form);
                    const RayWave& wave = f.*rays;
                    return Work{[&, coherence] { benchmark::DoNotOptimize(f.embree.intersect(wave, coherence)); },
                                double(wave.size())};
                  },
                  [=] {
-                   const Field& f = field(count);
+                   const Field& f = field(count, form);
                    const RayWave& wave = f.*rays;
                    const auto hits = std::make_shared<HitWave>();
                    return Work{[&, coherence, hits] { f.ours.intersect(wave, coherence, *hits); }, double(wave.size())};
                  }});
 }
 
-void register_shadow(int count) {
-  const std::string what = "intersect/sphere/", how = "/shadow/" + std::to_string(count);
+void register_shadow(const std::string& form, int count) {
+  const std::string what = "intersect/" + form + "/", how = "/shadow/" + std::to_string(count);
   register_pair({what + "embree_builtin" + how, what + "user_geometry" + how, "Mray/s",
                  [=] {
-                   const Field& f = field(count);
+                   const Field& f = field(count, form);
                    return Work{[&] { benchmark::DoNotOptimize(f.embree.occluded(f.shadow, Coherence::coherent)); },
                                double(f.shadow.size())};
                  },
                  [=] {
-                   const Field& f = field(count);
+                   const Field& f = field(count, form);
                    const auto visible = std::make_shared<Lanes<Rgb>>();
                    return Work{[&, visible] { f.ours.transmittance(f.shadow, Coherence::coherent, *visible); },
                                double(f.shadow.size())};
@@ -80,9 +82,11 @@ void register_shadow(int count) {
 
 [[maybe_unused]] const bool registered = [] {
   for (const int count : {1, 10'000, 1'000'000}) {
-    register_closest_hit("camera", count, &Field::camera, Coherence::coherent);
-    register_shadow(count);
-    register_closest_hit("incoherent", count, &Field::scattered, Coherence::incoherent);
+    for (const std::string form : {"sphere", "quadric"}) {
+      register_closest_hit(form, "camera", count, &Field::camera, Coherence::coherent);
+      register_shadow(form, count);
+      register_closest_hit(form, "incoherent", count, &Field::scattered, Coherence::incoherent);
+    }
   }
   return true;
 }();

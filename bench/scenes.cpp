@@ -33,6 +33,18 @@ Geometry sphere_field(int count) {
   return geometry;
 }
 
+Geometry as_quadrics(Geometry spheres) {
+  for (Shape& shape : spheres.shapes) {
+    const double r = std::get<Sphere>(shape).radius;
+    Quadric quadric;
+    quadric.coefficients[9] = -r * r;
+    quadric.box = *ellipsoid_bounds(quadric.coefficients);
+    quadric.solid = true;
+    shape = quadric;
+  }
+  return spheres;
+}
+
 TriangleMesh hills(int cells) {
   TriangleMesh mesh;
   const auto height = [](float x, float z) { return 0.05f * std::sin(9 * x + 2 * z) * std::cos(7 * z); };

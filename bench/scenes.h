@@ -11,6 +11,9 @@ namespace alhazen {
 /// one fills most of it.
 [[nodiscard]] Geometry sphere_field(int count);
 
+/// The same with its spheres given by ten coefficients.
+[[nodiscard]] Geometry as_quadrics(Geometry spheres);
+
 /// A square [-1, 1]² of rolling hills about y = 0, 2 `cells`² triangles.
 [[nodiscard]] TriangleMesh hills(int cells);
 
