@@ -5,6 +5,10 @@
 #include <cmath>
 #include <experimental/simd>
 
+#if defined __clang__ && defined __AVX512F__
+#include <immintrin.h>
+#endif
+
 namespace alhazen {
 
 __extension__ typedef __float128 Quad;  // IEEE binary128, in software
@@ -26,8 +30,14 @@ T select(bool mask, const T& yes, const T& no) {
   return mask ? yes : no;
 }
 inline DoubleLanes select(const LaneMask& mask, const DoubleLanes& yes, DoubleLanes no) {
+#if defined __clang__ && defined __AVX512F__ && defined __GLIBCXX__
+  // With clang, libstdc++'s where() takes all lanes or none here ("FIXME: this does a boolean choice, not a blend").
+  const auto lanes = static_cast<__mmask8>(mask.__to_bitset().to_ulong());
+  return DoubleLanes(_mm512_mask_blend_pd(lanes, static_cast<__m512d>(no), static_cast<__m512d>(yes)));
+#else
   where(mask, no) = yes;
   return no;
+#endif
 }
 
 inline double absolute(double x) { return std::abs(x); }
