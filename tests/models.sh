@@ -1,37 +1,44 @@
 #!/usr/bin/env bash
-# Renders every model of a folder: models.sh PROGRAM FOLDER. What is in FOLDER/broken may be refused, never crash or take
-# long; everything else renders without a warning about itself, unless it requires an extension that is not supported.
-# Status 77: there is no such folder.
+# Renders models: models.sh PROGRAM FOLDER whole|broken SECONDS. Of `broken`, what is in FOLDER/broken, each may be
+# refused, but not crash; of `whole`, everything else, each renders without a warning about itself, unless it requires an
+# extension that is not supported. None may take more than SECONDS of processor time. Status 77: there is no such folder.
 set -u
-program=$1 folder=$2
+program=$1 folder=$2 kind=$3 seconds=$4
 [ -d "$folder" ] || { echo "skipped: there is no $folder"; exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# Prints one line: what became of the model, its name, and why it failed.
-try_model() {
-  local model=$1 log status
-  log=$(mktemp -p "$work")
-  (ulimit -t 5 && timeout 120 "$program" render "$model" -o "$log.exr" --size 16x9 --threads 1 --quiet) >"$log" 2>&1
-  status=$?
-  rm -f "$log.exr"
-  # Left out on purpose: optional extensions, points and lines, images in formats that are not glTF's.
-  local known='/extensionsUsed: ignored: |points and lines are left out|cannot decode the image.*unknown image format'
-  case $status:$model in
-    0:*/broken/*) echo 'broken_rendered' ;;
-    3:*/broken/*) echo 'broken_refused' ;;
-    0:*) if grep -qvE "$known" "$log"; then echo "failed $model: $(grep -vE "$known" "$log" | head -1)"; else echo rendered; fi ;;
-    3:*) if grep -q 'requires the extension' "$log"; then echo refused; else echo "failed $model: $(head -1 "$log")"; fi ;;
-    *) echo "failed $model: status $status: $(head -1 "$log")" ;;
+# Left out on purpose: optional extensions, points and lines, images in formats that are not glTF's.
+known='/extensionsUsed: ignored: |points and lines are left out|cannot decode the image.*unknown image format'
+
+# What is wrong with a model that ended with this status and said this: nothing, or why.
+fault() {
+  local status=$1 log=$2
+  case $kind:$status in
+    whole:0) grep -vEm1 "$known" "$log" ;;
+    whole:3) grep -q 'requires the extension' "$log" || head -1 "$log" ;;
+    broken:0 | broken:3) ;;
+    *) echo "status $status: $(grep -Em1 'runtime error|Sanitizer' "$log" || head -1 "$log")" ;;
   esac
 }
-export -f try_model
-export program work
 
-find "$folder" -type f \( -name '*.gltf' -o -name '*.glb' \) -print0 | sort -z |
+# Prints one line: what became of the model, or its name and why it failed.
+try_model() {
+  local model=$1 log status found
+  log=$(mktemp -p "$work")
+  (ulimit -t "$seconds" && timeout 300 "$program" render "$model" -o "$log.exr" --size 16x9 --threads 1 --quiet) >"$log" 2>&1
+  status=$?
+  rm -f "$log.exr"
+  found=$(fault "$status" "$log")
+  if [ -n "$found" ]; then echo "failed $model: $found"; elif [ "$status" = 0 ]; then echo rendered; else echo refused; fi
+}
+export -f try_model fault
+export program work kind seconds known
+
+if [ "$kind" = broken ]; then chosen=(-path '*/broken/*'); else chosen=(-not -path '*/broken/*'); fi
+find "$folder" -type f \( -name '*.gltf' -o -name '*.glb' \) "${chosen[@]}" -print0 | sort -z |
   xargs -0 -P2 -I{} bash -c 'try_model "$1"' - {} >"$work/results"
 count() { grep -c "^$1" "$work/results"; }
-echo "models: $(count rendered) rendered, $(count refused) refused for a required extension;" \
-  "broken: $(count broken_rendered) rendered, $(count broken_refused) refused; $(count failed) failed"
+echo "$kind models: $(count rendered) rendered, $(count refused) refused, $(count failed) failed"
 sed -n 's/^failed /  /p' "$work/results"
-[ "$(count failed)" = 0 ] && [ "$(count rendered)" -gt 0 ]
+[ "$(count failed)" = 0 ] && [ -s "$work/results" ]
