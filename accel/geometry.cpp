@@ -9,6 +9,7 @@ void move_to_world(TriangleMesh& part, const Affine3d& world_from_object) {
   const bool mirrored = determinant(world_from_object) < 0;
   for (Vec3f& p : part.positions) p = Vec3f(transform_point(world_from_object, Vec3d(p)));
   for (Vec3f& n : part.normals) n = Vec3f(normalize(transform_normal(world_from_object, Vec3d(n))));
+  for (Vec3f& n : part.polygon_normals) n = Vec3f(normalize(transform_normal(world_from_object, Vec3d(n))));
   for (Vec4f& t : part.tangents) {
     const Vec3d v = normalize(transform_vector(world_from_object, Vec3d(t.x, t.y, t.z)));
     t = {float(v.x), float(v.y), float(v.z), mirrored ? -t.w : t.w};

@@ -18,13 +18,23 @@ struct TriangleMesh {
   std::vector<Vec3f> positions;
   std::vector<std::array<uint32_t, 3>>
       triangles;                        // indices into positions, all in range; counter-clockwise seen from outside
-  std::vector<Vec3f> normals;           // unit length; empty: the face's normal
+  std::vector<Vec3f> normals;           // unit length; empty: the polygon's normal
   std::vector<Vec4f> tangents;          // xyz unit length, w the sign of the bitangent cross(n, t) w
   std::vector<std::vector<Vec2f>> uvs;  // TEXCOORD_0, TEXCOORD_1, ...; at most kMaxUvSets
   std::vector<Vec4f> colors;            // COLOR_0, linear RGBA
   uint32_t material = 0;                // always a valid index into Scene::materials
-  uint32_t first_primitive = 0;         // index of triangle 0 counted through the whole glTF mesh
+  uint32_t first_primitive = 0;         // index of polygon 0 counted through the whole glTF mesh
+  // Polygon meshes: the triangles of a polygon follow each other.
+  std::vector<uint32_t> polygon_of_triangle;  // empty: every triangle is a polygon of its own
+  std::vector<Vec3f> polygon_normals;         // unit length or 0, by polygon; where there are no normals
 };
+
+[[nodiscard]] inline uint32_t polygon_of(const TriangleMesh& part, uint32_t triangle) {
+  return part.polygon_of_triangle.empty() ? triangle : part.polygon_of_triangle[triangle];
+}
+[[nodiscard]] inline size_t polygon_count(const TriangleMesh& part) {
+  return part.polygon_of_triangle.empty() ? part.triangles.size() : part.polygon_of_triangle.back() + size_t{1};
+}
 
 inline constexpr size_t kMaxUvSets = 8;
 

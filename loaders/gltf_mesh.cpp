@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/fork_join.h"
+#include "loaders/gltf_polygons.h"
 #include "loaders/tangents.h"
 
 namespace alhazen {
@@ -125,10 +126,16 @@ class PrimitiveReader {
     part.colors = read_colors(attributes);
     part.uvs = read_uvs(attributes);
     repair_normals(part);
+    if (r.extension("FB_ngon_encoding")) read_polygons(in, r, part);
     return part;
   }
 
  private:
+  void read_polygons(const tinygltf::Primitive& in, const JsonRef& r, TriangleMesh& part) {
+    if (in.mode == TINYGLTF_MODE_TRIANGLES) return join_polygons(part);
+    source_.warn(r.pointer(), "FB_ngon_encoding is ignored, it needs mode 4 (triangles)");
+  }
+
   struct Attributes {
     JsonRef r;
     uint64_t count;  // of the file's vertices
@@ -224,12 +231,12 @@ std::vector<Mesh> read_meshes(GltfSource& source, const GltfBuffers& buffers, co
     const tinygltf::Mesh& in = source.model.meshes[i];
     const JsonRef r = source.at("meshes", i);
     Mesh mesh{in.name, {}};
-    uint64_t triangles = 0;
+    uint64_t polygons = 0;
     for (size_t k = 0; k < in.primitives.size(); ++k) {
       auto part = reader.read(in.primitives[k], r["primitives"][k]);
       if (!part) continue;
-      part->first_primitive = uint32_t(triangles);
-      if ((triangles += part->triangles.size()) >= kNone) r.fail("more triangles than 32 bits can number");
+      part->first_primitive = uint32_t(polygons);
+      if ((polygons += polygon_count(*part)) >= kNone) r.fail("more triangles than 32 bits can number");
       mesh.parts.push_back(std::move(*part));
     }
     meshes.push_back(std::move(mesh));

@@ -8,10 +8,11 @@
 
 namespace alhazen {
 
-/// As many meshes as the file has. Strips and fans become triangles; points and lines are left out with a warning.
-/// Vertices that no index names are left out where they are many. Normals are unit length; tangents are made where a
-/// material's normal texture needs them and the file has none. `materials` ends with the default one. Throws LoadError
-/// for accessors of the wrong shape or length, for vertex indices out of range, and for numbers that are not finite.
+/// As many meshes as the file has. Strips and fans become triangles, FB_ngon_encoding makes polygons of them; points
+/// and lines are left out with a warning. Vertices that no index names are left out where they are many. Normals are
+/// unit length; tangents are made where a material's normal texture needs them and the file has none. `materials` ends
+/// with the default one. Throws LoadError for accessors of the wrong shape or length, for vertex indices out of range,
+/// and for numbers that are not finite.
 [[nodiscard]] std::vector<Mesh> read_meshes(GltfSource& source, const GltfBuffers& buffers,
                                             const std::vector<Material>& materials);
 

@@ -130,7 +130,8 @@ Check mesh() {
                                   {"indices", index_into("/accessors")},
                                   {"material", index_into("/materials")},
                                   {"mode", integer(0, 6)},
-                                  {"targets", list_of(attributes)}});
+                                  {"targets", list_of(attributes)},
+                                  {"extensions", object({{"FB_ngon_encoding", object({})}})}});
   return object({{"name", text()}, {"primitives", list_of(primitive), required}, {"weights", list_of(number())}});
 }
 

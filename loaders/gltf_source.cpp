@@ -13,10 +13,17 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 10> kSupported{
-    "KHR_lights_punctual", "KHR_texture_transform",  "KHR_materials_unlit",        "KHR_materials_emissive_strength",
-    "KHR_materials_ior",   "KHR_materials_specular", "KHR_materials_transmission", "ALHAZEN_materials_phong",
-    "ALHAZEN_lights",      "ALHAZEN_shapes"};
+constexpr std::array<std::string_view, 11> kSupported{"KHR_lights_punctual",
+                                                      "KHR_texture_transform",
+                                                      "KHR_materials_unlit",
+                                                      "KHR_materials_emissive_strength",
+                                                      "KHR_materials_ior",
+                                                      "KHR_materials_specular",
+                                                      "KHR_materials_transmission",
+                                                      "ALHAZEN_materials_phong",
+                                                      "ALHAZEN_lights",
+                                                      "ALHAZEN_shapes",
+                                                      "FB_ngon_encoding"};
 
 bool is_supported(const std::string& name) {
   return std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();

@@ -97,7 +97,7 @@ struct CellWorker {
       } else {
         const auto& parts = scene.geometry.meshes[scene.geometry.mesh_instances[object].mesh].parts;
         const TriangleMesh& part = parts[arena.hits.part[i]];
-        out[1] = part.first_primitive + arena.hits.primitive[i], material = part.material;
+        out[1] = part.first_primitive + polygon_of(part, arena.hits.primitive[i]), material = part.material;
       }
       // The default material is the last one, and none of the file's.
       out[2] = material + 1 == scene.materials.size() ? kNone : material;

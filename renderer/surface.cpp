@@ -39,6 +39,11 @@ SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v)
   Vec3d ng = normalize(cross(p1 - p0, p2 - p0));
   if (determinant(m) < 0) ng = -ng;
   s.ng_world = s.ns_world = Vec3f(ng);
+  if (part.normals.empty() && !part.polygon_normals.empty()) {
+    const Vec3f& n = part.polygon_normals[polygon_of(part, ids.primitive)];
+    const Vec3d n_world = normalize(transform_normal(m, Vec3d(n)));
+    if (dot(n_world, n_world) > 0) s.ns_world = Vec3f(n_world);
+  }
   // Rounding of the position, of the vertices relative to it in the traversal, and of an instance's ray transform.
   const double extent = max_component(max(abs(p1 - p0), abs(p2 - p0)));
   const bool baked = m == Affine3d{};

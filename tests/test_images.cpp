@@ -218,13 +218,9 @@ INSTANTIATE_TEST_SUITE_P(Images, SceneOfOurOwn, ::testing::ValuesIn(references(k
 
 // ---- scenes beside the project, computed by another renderer
 
-/// Scenes with polygon meshes, whose polygons are not told apart yet: `primitive` is left out.
-bool counts_triangles(const Reference& reference) { return reference.scene.stem() == "mesh-and-shapes"; }
-
 /// Red says where to compare the colours, green `node` and `material`, blue `primitive`.
-Mask fair_comparison(const Reference& reference, const PixelBuffer<uint8_t>& robust) {
+Mask fair_comparison(const PixelBuffer<uint8_t>& robust) {
   return [&](const std::string& name, Pixel p) {
-    if (name == "primitive" && counts_triangles(reference)) return false;
     const size_t c = name == "primitive" ? 2 : name == "node" || name == "material" ? 1 : 0;
     return robust.at(p.x, p.y)[c] != 0;
   };
@@ -235,11 +231,10 @@ class Example : public ::testing::TestWithParam<Reference> {};
 TEST_P(Example, AgreesWithAnotherRenderer) {
   const Reference& reference = GetParam();
   const auto robust = read_picture<uint8_t>(fs::path(reference.scene).replace_extension().string() + "-robust.png");
-  if (counts_triangles(reference)) std::printf("`primitive` is left out\n");
   if (reference.is_signature())
-    expect_like<uint32_t>(reference, "examples", kExampleIds, fair_comparison(reference, robust));
+    expect_like<uint32_t>(reference, "examples", kExampleIds, fair_comparison(robust));
   else
-    expect_like<float>(reference, "examples", kExampleColors, fair_comparison(reference, robust));
+    expect_like<float>(reference, "examples", kExampleColors, fair_comparison(robust));
 }
 
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Example);
