@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/fork_join.h"
 
 namespace alhazen {
 namespace {
@@ -288,6 +289,20 @@ void check_reach(const Geometry& geometry, const ShapeGroup::Member& member, con
                 ExitStatus::input);
 }
 
+/// Fills in how lines come to each member, in parallel; 1 for those that have no surface.
+std::vector<uint8_t> place_members(const Geometry& geometry, ShapeGroup& group) {
+  std::vector<uint8_t> empty(group.members.size());
+  const ForkJoin order;
+  tbb::parallel_for(size_t(0), group.members.size(), order.task([&](size_t k) {
+    ShapeGroup::Member& member = group.members[k];
+    member.placed.object_from_world = line_map(*member.placed.world_from_object);
+    const Bounds3d b = conservative_bounds(member.placed);
+    empty[k] = is_empty(b);
+    if (!empty[k]) check_reach(geometry, member, b);
+  }));
+  return empty;
+}
+
 }  // namespace
 
 std::vector<std::unique_ptr<ShapeGroup>> group_shapes(const Geometry& geometry, const SurfaceFilter& filter) {
@@ -303,14 +318,7 @@ std::vector<std::unique_ptr<ShapeGroup>> group_shapes(const Geometry& geometry, 
   }
   std::erase(groups, nullptr);
   for (auto& group : groups) {
-    std::vector<uint8_t> empty(group->members.size());
-    tbb::parallel_for(size_t(0), group->members.size(), [&](size_t k) {
-      ShapeGroup::Member& member = group->members[k];
-      member.placed.object_from_world = line_map(*member.placed.world_from_object);
-      const Bounds3d b = conservative_bounds(member.placed);
-      empty[k] = is_empty(b);
-      if (!empty[k]) check_reach(geometry, member, b);
-    });
+    const std::vector<uint8_t> empty = place_members(geometry, *group);
     size_t k = 0;  // what has no surface is never hit
     std::erase_if(group->members, [&](const auto&) { return empty[k++] != 0; });
   }
