@@ -63,6 +63,7 @@ struct Geometry {
   std::vector<Shape> shapes;
   std::vector<MeshInstance> mesh_instances;
   std::vector<ShapeInstance> shape_instances;
+  std::vector<uint32_t> parent_of_node;  // by glTF node, kNone for roots; may be shorter: the others are roots
 };
 
 /// Moves every mesh that is placed exactly once to world space, in place, and makes its instance's map the identity: an

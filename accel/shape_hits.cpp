@@ -51,6 +51,23 @@ Vec3<T> widened(const Vec3f& v) {
   return {T(v.x), T(v.y), T(v.z)};
 }
 
+template <class S>
+void append_hits_of(const S& shape, const LineMap<double>& object_from_world, const Affine3d& world_from_object,
+                    const Rayf& ray, std::vector<ShapeHit>& hits) {
+  if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == Vec3f{}) return;
+  const size_t first = hits.size();
+  const auto line = object_line(object_from_world, widened<double>(ray.origin), widened<double>(ray.direction));
+  if (try_hits<double>(shape, line, ray, hits)) return;
+  hits.resize(first);
+  ++doubt_counts().quad;
+  const LineMap<Quad> map = quad_line_map({&world_from_object, 1});
+  if (try_hits<Quad>(shape, object_line(map, widened<Quad>(ray.origin), widened<Quad>(ray.direction)), ray, hits))
+    return;
+  hits.resize(first);
+  ++doubt_counts().exact;
+  exact_hits(shape, world_from_object, ray, hits);
+}
+
 }  // namespace
 
 DoubtCounts& doubt_counts() noexcept {
@@ -59,23 +76,14 @@ DoubtCounts& doubt_counts() noexcept {
 }
 
 void append_hits(const PlacedShape& placed, const Rayf& ray, std::vector<ShapeHit>& hits) {
-  if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == Vec3f{}) return;
-  const size_t first = hits.size();
   std::visit(
-      [&](const auto& shape) {
-        const auto line =
-            object_line(placed.object_from_world, widened<double>(ray.origin), widened<double>(ray.direction));
-        if (try_hits<double>(shape, line, ray, hits)) return;
-        hits.resize(first);
-        ++doubt_counts().quad;
-        const LineMap<Quad> map = quad_line_map({placed.world_from_object, 1});
-        if (try_hits<Quad>(shape, object_line(map, widened<Quad>(ray.origin), widened<Quad>(ray.direction)), ray, hits))
-          return;
-        hits.resize(first);
-        ++doubt_counts().exact;
-        exact_hits(shape, *placed.world_from_object, ray, hits);
-      },
+      [&](const auto& shape) { append_hits_of(shape, placed.object_from_world, *placed.world_from_object, ray, hits); },
       *placed.shape);
+}
+
+void append_hits(const Triangle& triangle, const LineMap<double>& object_from_world, const Affine3d& world_from_object,
+                 const Rayf& ray, std::vector<ShapeHit>& hits) {
+  append_hits_of(triangle, object_from_world, world_from_object, ray, hits);
 }
 
 }  // namespace alhazen

@@ -5,6 +5,7 @@
 
 #include "accel/line_map.h"
 #include "accel/shape.h"
+#include "accel/shapes/triangle.h"
 #include "core/ray.h"
 
 namespace alhazen {
@@ -34,6 +35,10 @@ struct DoubtCounts {
 ///           where double cannot tell (an error below 2^-34 relative): then one of the two floats beside it.
 /// cost      double, then binary128 for the doubtful, then rational numbers for what is left: see `doubt_counts`.
 void append_hits(const PlacedShape& placed, const Rayf& ray_world, std::vector<ShapeHit>& hits);
+
+/// The same for a triangle in an object's space.
+void append_hits(const Triangle& triangle, const LineMap<double>& object_from_world, const Affine3d& world_from_object,
+                 const Rayf& ray_world, std::vector<ShapeHit>& hits);
 
 /// The first hit in range, without leaving T: where `doubtful`, ask `append_hits`.
 template <class T>

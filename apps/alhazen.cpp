@@ -6,6 +6,7 @@
 #include <new>
 
 #include "accel/accelerated_scene.h"
+#include "apps/bench_command.h"
 #include "apps/help_formatter.h"
 #include "apps/info_command.h"
 #include "apps/interruption.h"
@@ -20,6 +21,7 @@ namespace {
 constexpr Command (*kCommands[])(CLI::App& program) = {
     add_render_command,
     add_info_command,
+    add_bench_command,
 };
 
 std::string version() {

@@ -47,11 +47,7 @@ CLI::Validator finite() {
 
 void add_picture_options(CLI::App& command, RenderArguments& arguments) {
   RenderOptions& options = arguments.options;
-  command
-      .add_option_function<std::string>(
-          "--size", [&options](const std::string& text) { parse_size(text, options); }, "Size of the picture in pixels")
-      ->type_name("WxH")
-      ->default_str("1280x720");
+  add_size_option(command, options);
   command
       .add_option("--camera", arguments.camera,
                   "Index in the file's cameras, or a name; by default the scene's first, or one that shows it all")
@@ -133,6 +129,14 @@ std::string number(float v) {
 std::string number(const Rgb& c) { return number(c.r) + "," + number(c.g) + "," + number(c.b); }
 
 }  // namespace
+
+void add_size_option(CLI::App& command, RenderOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--size", [&options](const std::string& text) { parse_size(text, options); }, "Size of the picture in pixels")
+      ->type_name("WxH")
+      ->default_str(std::to_string(options.width) + "x" + std::to_string(options.height));
+}
 
 void add_render_options(CLI::App& command, RenderArguments& arguments) {
   command.add_option("SCENE", arguments.scene, "glTF 2.0 file (.gltf or .glb)")->type_name("")->required();

@@ -29,6 +29,9 @@ struct RenderArguments {
 /// Fills `arguments`, which must live as long as `command`, when the command line is parsed.
 void add_render_options(CLI::App& command, RenderArguments& arguments);
 
+/// --size, whose default `options` holds; it must live as long as `command`.
+void add_size_option(CLI::App& command, RenderOptions& options);
+
 /// Throws UsageError for options that do not go together.
 void check_arguments(const RenderArguments& arguments);
 

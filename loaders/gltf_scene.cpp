@@ -218,6 +218,7 @@ void read_surroundings(const JsonRef& e, Scene& scene) {
 void read_scene(GltfSource& source, Scene& scene) {
   for (const tinygltf::Node& node : source.model.nodes) scene.node_names.push_back(node.name);
   const Forest forest = read_forest(source);
+  scene.geometry.parent_of_node = forest.parent;
   const std::vector<Affine3d> world = world_from_nodes(source, forest);
   const auto chosen = size_t(std::max(source.model.defaultScene, 0));
   std::vector<uint32_t> shown = forest.below(shown_roots(source, forest, chosen));

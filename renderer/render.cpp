@@ -10,6 +10,7 @@
 
 #include "core/fork_join.h"
 #include "core/sampling.h"
+#include "renderer/camera_ray.h"
 #include "renderer/surface.h"
 #include "renderer/whitted.h"
 
@@ -33,17 +34,6 @@ Rgb light_passing(const void* data, const Crossing& crossing) noexcept {
   return straight_transmittance(scene.materials[s.material], texture_table(scene), s.inputs());
 }
 
-/// The ray through a film point (x, y) in pixels from the top left.
-Rayf camera_ray(const Camera& camera, const RenderOptions& options, double x, double y) {
-  const double half = camera.kind == Camera::Kind::perspective ? std::tan(camera.yfov / 2) : camera.ymag;
-  const double step = 2 * half / options.height;
-  const Vec3d film{(x - 0.5 * options.width) * step, (0.5 * options.height - y) * step, 0};
-  const Affine3d& m = camera.world_from_camera;
-  if (camera.kind == Camera::Kind::perspective)
-    return {Vec3f(m.origin), Vec3f(normalize(transform_vector(m, film - Vec3d{0, 0, 1})))};
-  return {Vec3f(transform_point(m, film)), Vec3f(-m.z)};
-}
-
 struct Cell {
   int x0, y0, x1, y1;  // pixels, end exclusive
 };
@@ -63,7 +53,7 @@ void push_camera_rays(const Camera& camera, const RenderOptions& options, const 
           fx += double(sample_tent(u.x)), fy += double(sample_tent(u.y));
         }
         const uint32_t pixel = uint32_t((y - cell.y0) * kCellSize + (x - cell.x0));
-        wave.push(camera_ray(camera, options, fx, fy), pixel, Rgb(1.0f), 0, RayKind::camera);
+        wave.push(camera_ray(camera, options.width, options.height, fx, fy), pixel, Rgb(1.0f), 0, RayKind::camera);
       }
 }
 
@@ -87,20 +77,11 @@ struct CellWorker {
     push_camera_rays(camera, options, cell, 0, arena.pending);
     accelerated.intersect(arena.pending.rays, Coherence::coherent, arena.hits);
     for (size_t i = 0; i < arena.pending.size(); ++i) {
-      const uint32_t object = arena.hits.object[i];
-      if (object == kNone) continue;
+      if (arena.hits.object[i] == kNone) continue;
+      const HitIds hit{arena.hits.object[i], arena.hits.part[i], arena.hits.primitive[i]};
+      const SurfaceIds ids = surface_ids(scene, hit);
       uint32_t* out = pixel_at(result.ids, cell, arena.pending.pixel[i]);
-      out[0] = node_of(scene.geometry, object);
-      uint32_t material;
-      if (is_shape(scene.geometry, object)) {
-        out[1] = 0, material = shape_instance(scene.geometry, object).material;
-      } else {
-        const auto& parts = scene.geometry.meshes[scene.geometry.mesh_instances[object].mesh].parts;
-        const TriangleMesh& part = parts[arena.hits.part[i]];
-        out[1] = part.first_primitive + polygon_of(part, arena.hits.primitive[i]), material = part.material;
-      }
-      // The default material is the last one, and none of the file's.
-      out[2] = material + 1 == scene.materials.size() ? kNone : material;
+      out[0] = ids.node, out[1] = ids.primitive, out[2] = ids.material;
     }
     control.camera_rays += arena.pending.size();
   }

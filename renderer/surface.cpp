@@ -88,6 +88,16 @@ SurfacePoint shape_point(const Scene& scene, uint32_t object, int face, const Ve
 
 }  // namespace
 
+SurfaceIds surface_ids(const Scene& scene, const HitIds& hit) noexcept {
+  const Geometry& geometry = scene.geometry;
+  // The default material is the last one, and none of the file's.
+  const auto of_file = [&](uint32_t material) { return material + 1 == scene.materials.size() ? kNone : material; };
+  const uint32_t node = node_of(geometry, hit.object);
+  if (is_shape(geometry, hit.object)) return {node, 0, of_file(shape_instance(geometry, hit.object).material)};
+  const TriangleMesh& part = geometry.meshes[geometry.mesh_instances[hit.object].mesh].parts[hit.part];
+  return {node, part.first_primitive + polygon_of(part, hit.primitive), of_file(part.material)};
+}
+
 SurfacePoint surface_point(const Scene& scene, const Rayf& ray_world, const HitIds& ids, float t, float u,
                            float v) noexcept {
   if (!is_shape(scene.geometry, ids.object)) return mesh_point(scene, ids, u, v);

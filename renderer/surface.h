@@ -26,6 +26,15 @@ struct HitIds {
   uint32_t object, part, primitive;
 };
 
+/// What the scene signature says of a surface.
+struct SurfaceIds {
+  uint32_t node;       // glTF's
+  uint32_t primitive;  // polygon in the node's mesh, 0 on a shape
+  uint32_t material;   // glTF's; kNone for the default material
+  friend bool operator==(const SurfaceIds&, const SurfaceIds&) = default;
+};
+[[nodiscard]] SurfaceIds surface_ids(const Scene& scene, const HitIds& hit) noexcept;
+
 /// The surface where `ray_world` hits at t, with barycentric u and v for triangles.
 [[nodiscard]] SurfacePoint surface_point(const Scene& scene, const Rayf& ray_world, const HitIds& ids, float t, float u,
                                          float v) noexcept;

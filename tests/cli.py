@@ -103,15 +103,22 @@ class CommandLine(unittest.TestCase):
             (["render", SCENE, "-o", "a.png", "--integrator", "whited"], "did you mean 'whitted'?"),
             (["render", SCENE, "-o", self.file("a.png"), "--camera", "frnt"], "the scene has 0 'front'; did you mean"),
             (["info", SCENE, "--jsn"], "did you mean '--json'?"),
-            ([], "expected a command: render, info"),
+            ([], "expected a command: render, info, bench"),
         ):
             result = run(*arguments)
             self.assertEqual(result.returncode, 2, arguments)
             self.assertIn(expected, result.stderr)
             self.assertEqual(len(result.stderr.splitlines()), 1)
 
+    def test_bench_climbs_the_ladder(self):
+        lines = run("bench", "--ladder", SCENE, "--size", "16x12").stdout.splitlines()
+        self.assertEqual(lines[0].split(), ["accelerator", "us/ray", "primitives/ray", "boxes/ray", "speed-up"])
+        names = [line[:17].strip() for line in lines[1:]]
+        self.assertEqual(names, ["every primitive", "object boxes", "node tree", "image rectangles", "Embree"])
+        self.assertEqual(run("bench").returncode, 2)
+
     def test_each_help_has_an_example_and_fits(self):
-        for command in ([], ["render"], ["info"]):
+        for command in ([], ["render"], ["info"], ["bench"]):
             text = run(*command, "--help").stdout
             self.assertIn("Example", text)
             self.assertLessEqual(max(map(len, text.splitlines())), 100)
