@@ -12,7 +12,7 @@ inline constexpr double kAccuracy<Quad> = 0x1p-70;
 /// Keeps a crossing if it is in range; false where that, or the rounding of t, is not certain.
 template <class T>
 bool keep(const T& t, const T& error, int face, const Rayf& ray, std::vector<ShapeHit>& hits) {
-  if (t + error < T(ray.t_min) || t - error > T(ray.t_max)) return true;
+  if (!may_round_into(t, error, T(ray.t_min), T(ray.t_max))) return true;
   if (!(error <= absolute(t) * T(kAccuracy<T>))) return false;
   const float rounded = float(t);
   if (rounded >= ray.t_min && rounded <= ray.t_max) hits.push_back({rounded, uint32_t(face)});

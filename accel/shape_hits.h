@@ -28,8 +28,8 @@ struct DoubtCounts {
 };
 [[nodiscard]] DoubtCounts& doubt_counts() noexcept;
 
-/// Appends all hits with t_min <= t <= t_max, nearest first. Rays that are not finite, or without direction, hit
-/// nothing.
+/// Appends all hits with t_min <= t <= t_max, t as rounded to float, nearest first. Rays that are not finite, or
+/// without direction, hit nothing.
 ///
 /// accuracy  hit or miss, order and face are those of exact arithmetic on the given numbers; t is correctly rounded but
 ///           where double cannot tell (an error below 2^-34 relative): then one of the two floats beside it.
@@ -54,13 +54,19 @@ inline DoubleLanes rounded_to_float(const DoubleLanes& x) {
   return DoubleLanes(buffer.data(), std::experimental::element_aligned);
 }
 
+/// Whether a parameter, rounded to float, may come to lie in [t_min, t_max]: it need not be in there itself.
+template <class T>
+MaskOf<T> may_round_into(const T& t, const T& error, const T& t_min, const T& t_max) {
+  const double half = 0x1p-24;  // half the distance of floats, relative
+  return !(t + error < t_min - absolute(t_min) * half) && !(t - error > t_max + absolute(t_max) * half);
+}
+
 template <class T>
 [[nodiscard]] Nearest<T> nearest(const LineCrossings<T>& crossings, const T& t_min, const T& t_max) {
   using Mask = MaskOf<T>;
   Nearest<T> found{T(0), T(0), Mask(false), crossings.doubtful};
   for (const auto& c : crossings.at) {
-    const Mask candidate =
-        c.present && !found.hit && !found.doubtful && !(c.t + c.error < t_min) && !(c.t - c.error > t_max);
+    const Mask candidate = c.present && !found.hit && !found.doubtful && may_round_into(c.t, c.error, t_min, t_max);
     found.doubtful = found.doubtful || (candidate && !(c.error <= absolute(c.t) * kParameterAccuracy));
     const T t = rounded_to_float(c.t);
     const Mask hit = candidate && !found.doubtful && t >= t_min && t <= t_max;
@@ -80,7 +86,7 @@ template <class T>
   Blocked<T> found{MaskOf<T>(false), crossings.doubtful};
   for (const auto& c : crossings.at) {
     found.blocked = found.blocked || (c.present && c.t - c.error > t_min && c.t + c.error < t_max);
-    found.doubtful = found.doubtful || (c.present && !(c.t + c.error < t_min) && !(c.t - c.error > t_max));
+    found.doubtful = found.doubtful || (c.present && may_round_into(c.t, c.error, t_min, t_max));
   }
   found.blocked = found.blocked && !crossings.doubtful;
   found.doubtful = found.doubtful && !found.blocked;

@@ -7,6 +7,7 @@
 
 #include "accel/accelerated_scene.h"
 #include "apps/bench_command.h"
+#include "apps/crosscheck_command.h"
 #include "apps/help_formatter.h"
 #include "apps/info_command.h"
 #include "apps/interruption.h"
@@ -22,6 +23,7 @@ constexpr Command (*kCommands[])(CLI::App& program) = {
     add_render_command,
     add_info_command,
     add_bench_command,
+    add_crosscheck_command,
 };
 
 std::string version() {

@@ -1,0 +1,80 @@
+#include <cmath>
+
+#include "accel/accelerated_scene.h"
+#include "crosscheck/party.h"
+#include "crosscheck/triangle_scene.h"
+
+namespace alhazen::crosscheck {
+namespace {
+
+/// Shapes, as the renderer asks for them.
+class ShapeParty final : public Party {
+ public:
+  ShapeParty(Shape shape, const Affine3d& world_from_object)
+      : geometry_(geometry_of(std::move(shape), world_from_object)),
+        scene_(geometry_, {}, {}),
+        object_from_world_(inverse(world_from_object)) {}
+
+  void answer(std::span<const Rayf> rays, std::vector<Answer>& answers) override {
+    wave_.resize(rays.size());
+    for (size_t k = 0; k < rays.size(); ++k) wave_.set(k, rays[k]);
+    scene_.intersect(wave_, Coherence::incoherent, hits_);
+    answers.assign(rays.size(), {});
+    for (size_t k = 0; k < rays.size(); ++k)
+      if (hits_.object[k] != kNone) answers[k] = answer_of(rays[k], hits_.t[k], int(hits_.part[k]));
+  }
+
+ private:
+  static Geometry geometry_of(Shape shape, const Affine3d& m) {
+    Geometry geometry;
+    geometry.shapes.push_back(std::move(shape));
+    geometry.shape_instances.push_back({0, 0, 0, m});
+    return geometry;
+  }
+
+  /// The normal as shading takes it: at the point of the surface nearest to the rounded hit.
+  [[nodiscard]] Answer answer_of(const Rayf& ray, float t, int face) const {
+    const Vec3d p_world = Vec3d(ray.origin) + Vec3d(ray.direction) * double(t);
+    const Vec3d p_near = transform_point(object_from_world_, p_world);
+    const Vec3d n =
+        std::visit([&](const auto& s) { return normal(s, project(s, p_near, face), face); }, geometry_.shapes.front());
+    return {.hit = true, .t = t, .face = face, .normal_object = n};
+  }
+
+  Geometry geometry_;
+  AcceleratedScene scene_;
+  Affine3d object_from_world_;
+  RayWave wave_;
+  HitWave hits_;
+};
+
+class TriangleParty final : public Party {
+ public:
+  explicit TriangleParty(const Triangle& triangle) : scene_({&triangle, 1}), normal_(normal(triangle, {}, 0)) {}
+
+  void answer(std::span<const Rayf> rays, std::vector<Answer>& answers) override {
+    answers.assign(rays.size(), {});
+    scene_.trace(rays, [&](size_t k, uint32_t, float t) {
+      answers[k] = {.hit = true, .t = t, .face = kWallFace, .normal_object = normal_};
+    });
+  }
+
+ private:
+  TriangleScene scene_;
+  Vec3d normal_;
+};
+
+}  // namespace
+
+std::unique_ptr<Party> custom_party(const Subject& subject) {
+  return std::visit(
+      [&](const auto& s) -> std::unique_ptr<Party> {
+        if constexpr (std::is_same_v<std::decay_t<decltype(s)>, Triangle>)
+          return std::make_unique<TriangleParty>(s);  // families hold triangles in world space
+        else
+          return std::make_unique<ShapeParty>(Shape(s), subject.world_from_object);
+      },
+      subject.surface);
+}
+
+}  // namespace alhazen::crosscheck

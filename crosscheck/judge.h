@@ -1,0 +1,41 @@
+// The judge: what a ray hits in truth. Interval arithmetic in binary128 first, rational numbers for what that leaves
+// open. It shares no arithmetic with the intersectors: it tells inside from outside between the crossings of all
+// surfaces, where they order the crossings.
+#pragma once
+
+#include <memory>
+
+#include "crosscheck/exact_ties.h"
+#include "crosscheck/subject.h"
+
+namespace alhazen::crosscheck {
+
+struct Judgement {
+  bool hit = false;
+  float t = 0;  // correctly rounded
+  int face = 0;
+  int side = 0;                 // of the ray against the normal: -1 from outside, 1 from inside, 0 grazing
+  Vec3d normal_object;          // unit, or zero where there is none
+  double normal_tolerance = 0;  // by how much, in radians, an error of one unit in the last place of t may turn it
+  Tie tie = Tie::none;
+  bool by_rationals = false;
+};
+
+class Judge {
+ public:
+  explicit Judge(const Subject& subject);
+  ~Judge();
+
+  /// The nearest hit with t_min <= t <= t_max, t being the float nearest to the exact parameter. For finite rays with a
+  /// direction.
+  [[nodiscard]] Judgement closest(const Rayf& ray_world) const;
+
+  /// The same by rational numbers alone.
+  [[nodiscard]] Judgement closest_exactly(const Rayf& ray_world) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace alhazen::crosscheck

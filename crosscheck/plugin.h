@@ -1,0 +1,35 @@
+// Intersectors from shared libraries.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "crosscheck/intersector_plugin.h"
+#include "crosscheck/subject.h"
+
+namespace alhazen::crosscheck {
+
+/// A library that stays loaded as long as this lives.
+class Plugin {
+ public:
+  /// Throws LoadError naming the file: cannot be loaded, exports no intersector, of another version, incomplete, or
+  /// claims to be a surface that is not known.
+  explicit Plugin(const std::string& file);
+
+  [[nodiscard]] const alhazen_intersector& intersector() const { return *intersector_; }
+  /// Of one subject: the surface that it claims to be.
+  [[nodiscard]] Family family() const;
+
+ private:
+  struct Close {
+    void operator()(void* library) const;
+  };
+  std::unique_ptr<void, Close> library_;
+  const alhazen_intersector* intersector_ = nullptr;
+  Surface surface_;
+};
+
+/// "sphere 1" and the like, as crosscheck/intersector_plugin.h lists them. Throws std::invalid_argument.
+[[nodiscard]] Surface parse_surface(const std::string& text);
+
+}  // namespace alhazen::crosscheck

@@ -1,0 +1,124 @@
+#include "crosscheck/report.h"
+
+#include <cstdio>
+
+#include "crosscheck/subject_json.h"
+
+namespace alhazen::crosscheck {
+namespace {
+
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+  char text[512];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+std::string percent(uint64_t part, uint64_t whole) {
+  if (whole == 0) return "-";
+  if (part == whole) return "100";
+  return formatted("%.4f", 100 * double(part) / double(whole));
+}
+
+std::string floats(uint64_t judged, double worst) { return judged ? formatted("%.3g", worst) : "-"; }
+
+Json answer_json(const Answer& answer, const Judgement& truth, Fault fault) {
+  Json json{{"hit", answer.hit}};
+  if (answer.hit) {
+    json["t"] = hex(answer.t);
+    if (answer.face != kNoFace) json["face"] = answer.face;
+    if (truth.hit) json["t_error_ulp"] = floats_between(answer.t, truth.t);
+    if (dot(answer.normal_object, answer.normal_object) > 0) json["normal"] = hex(answer.normal_object);
+  }
+  json["fault"] = name_of(fault);
+  return json;
+}
+
+Json truth_json(const Judgement& truth) {
+  constexpr const char* kSides[] = {"inside", "grazing", "outside"};
+  constexpr const char* kTies[] = {"none", "edge", "tangent", "coplanar"};
+  Json json{{"hit", truth.hit}};
+  if (truth.hit) {
+    json["t"] = hex(truth.t), json["face"] = truth.face, json["side"] = kSides[1 - truth.side];
+    json["normal"] = hex(truth.normal_object);
+  }
+  json["tie"] = kTies[size_t(truth.tie)], json["by"] = truth.by_rationals ? "rationals" : "intervals";
+  return json;
+}
+
+std::string paragraph(const std::string& title, const std::map<std::pair<std::string, Fault>, std::string>& lines) {
+  std::string text = title + "\n";
+  for (const auto& [key, line] : lines) text += "  " + line + "\n";
+  return text;
+}
+
+}  // namespace
+
+std::string table_head() {
+  return formatted("%-15s %-10s %8s %8s %8s %8s %7s %7s %6s %6s %6s | %9s %9s %9s %9s | %9s %9s %9s\n", "shape",
+                   "population", "rays", "hits", "AGREE", "A_RIGHT", "B_RIGHT", "BOTH_WR", "ties", "domain", "unexpl",
+                   "A exact %", "A worst", "B exact %", "B worst", "A quad", "A rational", "J rational");
+}
+
+std::string table_row(const std::string& family, const std::string& population, const Tally& t) {
+  const auto n = [](uint64_t v) { return static_cast<unsigned long long>(v); };
+  const uint64_t ties = t.of(Verdict::tie_edge) + t.of(Verdict::tie_tangent) + t.of(Verdict::tie_coplanar);
+  return formatted(
+      "%-15s %-10s %8llu %8llu %8llu %8llu %7llu %7llu %6llu %6llu %6llu | %9s %9s %9s %9s | %9llu %9llu %9llu\n",
+      family.c_str(), population.c_str(), n(t.rays), n(t.hits), n(t.of(Verdict::agree)), n(t.of(Verdict::a_right)),
+      n(t.of(Verdict::b_right)), n(t.of(Verdict::both_wrong)), n(ties), n(t.of(Verdict::out_of_domain)),
+      n(t.of(Verdict::unexplained)), percent(t.a_exact, t.a_judged).c_str(), floats(t.a_judged, t.a_worst).c_str(),
+      percent(t.b_exact, t.b_judged).c_str(), floats(t.b_judged, t.b_worst).c_str(), n(t.a_quads), n(t.a_rationals),
+      n(t.judge_rationals));
+}
+
+std::string reproduction(const std::string& family, const Case& c, uint64_t seed, const std::string& source) {
+  return "alhazen crosscheck" + source + " --shape " + family + " --population " + name_of(c.population) + " --seed " +
+         std::to_string(seed) + " --only " + std::to_string(c.index);
+}
+
+std::string record(const std::string& family, const Case& c, const Options& options, const std::string& source) {
+  Json json{{"verdict", name_of(c.verdict)},
+            {"shape", family},
+            {"population", name_of(c.population)},
+            {"seed", options.seed},
+            {"index", c.index},
+            {"ray", to_json(c.ray)},
+            {"subject", to_json(*c.subject)},
+            {"A", answer_json(c.a, c.truth, c.a_fault)}};
+  if (c.b && c.b_fault) json["B"] = answer_json(*c.b, c.truth, *c.b_fault);
+  json["J"] = truth_json(c.truth);
+  json["embree"] = embree_version();
+  json["again"] = reproduction(family, c, options.seed, source);
+  return json.dump();
+}
+
+void Faults::add(const std::string& family, const Case& c, const std::string& command) {
+  const auto note = [&](Table& table, Fault fault, const Answer& answer) {
+    if (fault == Fault::none) return;
+    Entry& entry = table[{family, fault}];
+    if (entry.count++ > 0) return;
+    entry.example = command;
+    if (fault == Fault::wrong_t)
+      entry.example += formatted("  (t %.9g, truly %.9g)", double(answer.t), double(c.truth.t));
+  };
+  note(a_, c.a_fault, c.a);
+  if (c.b_fault) note(b_, *c.b_fault, *c.b);
+}
+
+std::string Faults::text() const {
+  std::string text;
+  for (const auto& [title, table] :
+       {std::pair("A, the custom intersector, is wrong:", &a_), std::pair("B, Embree's own, is wrong:", &b_)}) {
+    if (table->empty()) continue;
+    std::map<std::pair<std::string, Fault>, std::string> lines;
+    for (const auto& [key, entry] : *table)
+      lines[key] = formatted("%-15s %8llu x %-12s e.g. ", key.first.c_str(),
+                             static_cast<unsigned long long>(entry.count), name_of(key.second)) +
+                   entry.example;
+    text += paragraph(title, lines);
+  }
+  return text;
+}
+
+}  // namespace alhazen::crosscheck

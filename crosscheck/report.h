@@ -1,0 +1,40 @@
+// What a cross-check says: a row for each family and population, a JSON line for each disagreement.
+#pragma once
+
+#include <map>
+#include <ostream>
+#include <string>
+
+#include "crosscheck/crosscheck.h"
+
+namespace alhazen::crosscheck {
+
+/// The heads of the columns, then rows under them.
+[[nodiscard]] std::string table_head();
+[[nodiscard]] std::string table_row(const std::string& family, const std::string& population, const Tally& tally);
+
+/// The command that judges this one ray again. `source`: scene or intersector arguments, with a space in front.
+[[nodiscard]] std::string reproduction(const std::string& family, const Case& c, uint64_t seed,
+                                       const std::string& source);
+
+/// One line of JSON without its end: ray and subject in hexadecimal floats, what the parties say, how far off each is.
+[[nodiscard]] std::string record(const std::string& family, const Case& c, const Options& options,
+                                 const std::string& source);
+
+/// How often a party is wrong, and the first example of each fault.
+class Faults {
+ public:
+  void add(const std::string& family, const Case& c, const std::string& command);
+  /// A paragraph for each party that was wrong; empty where none was.
+  [[nodiscard]] std::string text() const;
+
+ private:
+  struct Entry {
+    uint64_t count = 0;
+    std::string example;
+  };
+  using Table = std::map<std::pair<std::string, Fault>, Entry>;
+  Table a_, b_;
+};
+
+}  // namespace alhazen::crosscheck

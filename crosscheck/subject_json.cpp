@@ -1,0 +1,71 @@
+#include "crosscheck/subject_json.h"
+
+#include <cstdio>
+
+namespace alhazen::crosscheck {
+namespace {
+
+Json map_json(const Affine3d& m) { return {hex(m.x), hex(m.y), hex(m.z), hex(m.origin)}; }
+
+Json surface_json(const Sphere& s) { return {{"sphere", {{"radius", hex(s.radius)}}}}; }
+Json surface_json(const Cylinder& c) {
+  return {{"cylinder",
+           {{"height", hex(c.height)},
+            {"radius_bottom", hex(c.radius_bottom)},
+            {"radius_top", hex(c.radius_top)},
+            {"caps", c.caps}}}};
+}
+Json surface_json(const Disk& d) {
+  return {{"disk", {{"radius", hex(d.radius)}, {"inner_radius", hex(d.inner_radius)}}}};
+}
+Json surface_json(const Box& b) { return {{"box", {{"size", hex(b.size)}}}}; }
+Json surface_json(const Quadric& q) {
+  Json coefficients = Json::array();
+  for (const double c : q.coefficients) coefficients.push_back(hex(c));
+  return {{"quadric",
+           {{"coefficients", coefficients}, {"min", hex(q.box.lower)}, {"max", hex(q.box.upper)}, {"solid", q.solid}}}};
+}
+Json surface_json(const Triangle& t) { return {{"triangle", {hex(t.a), hex(t.b), hex(t.c)}}}; }
+Json surface_json(const Polygon& p) {
+  Json vertices = Json::array();
+  for (const Vec3d& v : p.vertices) vertices.push_back(hex(v));
+  return {{"polygon", {{"vertices_of_all_loops", vertices}}}};
+}
+Json surface_json(const Composite& c) {
+  constexpr const char* kOperations[] = {"leaf", "union", "intersection", "difference"};
+  Json leaves = Json::array(), nodes = Json::array();
+  for (const CompositeLeaf& leaf : c.leaves) {
+    Json maps = Json::array();
+    for (const Affine3d& m : leaf.chain) maps.push_back(map_json(m));
+    Json body = std::visit([](const auto& b) { return surface_json(b); }, leaf.body);
+    body["maps"] = maps;
+    leaves.push_back(body);
+  }
+  for (const CompositeNode& node : c.nodes)
+    nodes.push_back(Json{kOperations[size_t(node.operation)], node.first, node.count});
+  return {{"composite", {{"nodes", nodes}, {"leaves", leaves}}}};
+}
+
+}  // namespace
+
+std::string hex(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%a", x);
+  return text;
+}
+Json hex(const Vec3d& v) { return {hex(v.x), hex(v.y), hex(v.z)}; }
+
+Json to_json(const Subject& subject) {
+  Json json = std::visit([](const auto& s) { return surface_json(s); }, subject.surface);
+  json["world_from_object_columns"] = map_json(subject.world_from_object);
+  return json;
+}
+
+Json to_json(const Rayf& ray) {
+  return {{"origin", hex(Vec3d(ray.origin))},
+          {"direction", hex(Vec3d(ray.direction))},
+          {"t_min", hex(ray.t_min)},
+          {"t_max", hex(ray.t_max)}};
+}
+
+}  // namespace alhazen::crosscheck
