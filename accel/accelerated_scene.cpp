@@ -1,6 +1,7 @@
 #include "accel/accelerated_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -96,6 +97,20 @@ struct AcceleratedScene::Traversal {
       ray.time[i] = 0, ray.mask[i] = embree::kEveryRay, ray.flags[i] = 0, ray.id[i] = unsigned(first) + unsigned(i);
   }
 
+  /// -1 for the lanes that hold rays that traversal can take, else 0: one component beyond its range ends the program
+  /// where Embree's assertions are on. Such rays, and those that are not numbers, hit nothing.
+  template <int width>
+  static void choose_lanes(const RayWave& wave, size_t first, int lanes, int* valid) {
+    constexpr float kReach = 1.8e18f;
+    const auto within = [&](const Vec3Lanes& v, size_t k) {
+      return std::abs(v.x[k]) < kReach && std::abs(v.y[k]) < kReach && std::abs(v.z[k]) < kReach;
+    };
+    for (int i = 0; i < width; ++i) {
+      const size_t k = first + size_t(i);
+      valid[i] = i < lanes && within(wave.origin, k) && within(wave.direction, k) ? -1 : 0;
+    }
+  }
+
   template <int width>
   static void intersect_packets(const Impl& impl, const RayWave& wave, Coherence coherence, HitWave& hits) {
     Query query(impl, coherence, nullptr);
@@ -104,10 +119,8 @@ struct AcceleratedScene::Traversal {
       const int lanes = int(std::min(size_t(width), n - first));
       alignas(64) typename embree::Packets<width>::RayHit packet;
       alignas(64) int valid[width];
-      for (int i = 0; i < width; ++i) {
-        valid[i] = i < lanes ? -1 : 0;
-        packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-      }
+      choose_lanes<width>(wave, first, lanes, valid);
+      for (int i = 0; i < width; ++i) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
       load_rays(wave, first, width, packet.ray);
       embree::intersect<width>(valid, impl.scene, query, packet);
       for (int i = 0; i < lanes; ++i) {
@@ -130,7 +143,7 @@ struct AcceleratedScene::Traversal {
       const int lanes = int(std::min(size_t(width), n - first));
       alignas(64) typename embree::Packets<width>::Ray packet;
       alignas(64) int valid[width];
-      for (int i = 0; i < width; ++i) valid[i] = i < lanes ? -1 : 0;
+      choose_lanes<width>(wave, first, lanes, valid);
       load_rays(wave, first, width, packet);
       embree::occluded<width>(valid, impl.scene, query, packet);
       for (int i = 0; i < lanes; ++i)

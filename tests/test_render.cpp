@@ -132,6 +132,28 @@ TEST(Render, AFlatGroundHasNoAcneAtAnyScale) {
   }
 }
 
+TEST(AcceleratedScene, RaysBeyondItsReachHitNothing) {
+  const Scene scene = spheres_over_ground(1, true);
+  const AcceleratedScene accelerated(scene.geometry, {});
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  RayWave wave;
+  wave.resize(6);
+  wave.set(0, {{0, 3e38f, 0}, {0, -1, 0}});
+  wave.set(1, {{0, 1, 0}, {0, -3e38f, 0}});
+  wave.set(2, {{nan, 1, 0}, {0, -1, 0}});
+  wave.set(3, {{0, 1, 0}, {0, inf, 0}});
+  wave.set(4, {{-inf, 1, 0}, {1, 0, 0}});
+  wave.set(5, {{0, 1, 0}, {nan, nan, nan}});
+  HitWave hits;
+  Lanes<Rgb> visible;
+  accelerated.intersect(wave, Coherence::incoherent, hits);
+  accelerated.transmittance(wave, Coherence::coherent, visible);
+  for (size_t i = 0; i < wave.size(); ++i) {
+    EXPECT_EQ(hits.object[i], kNone);
+    EXPECT_EQ(visible[i], Rgb(1.0f));
+  }
+}
+
 TEST(AcceleratedScene, CoherentShadowsAfterIncoherentRaysOnInstancesReturn) {
   // The sequence on which Embree 3.13.5 does not return with 16-wide coherent shadow packets: the test's time limit is
   // the claim.
