@@ -19,8 +19,8 @@ struct RenderOptions {
   float min_weight = 0.001f;
   int samples = 1;           // for each pixel
   bool transparent = false;  // where the view meets the background, alpha says so and its colour is left out
-  int threads = 0;     // 0: all
-  int tile_size = 64;  // pixels; rounded up to whole cells; never changes the picture
+  int threads = 0;           // 0: all
+  int tile_size = 64;        // pixels; rounded up to whole cells; never changes the picture
 };
 
 /// How far a render is, and the request to stop it: written and read by different threads.

@@ -199,7 +199,8 @@ class Whitted {
     }
     if (light.kind == Light::Kind::spot) {
       const float scale = 1 / std::max(0.001f, light.cos_inner - light.cos_outer);
-      const float angular = std::clamp((float(-dot(light.direction_world, Vec3d(to_light))) - light.cos_outer) * scale, 0.0f, 1.0f);
+      const float angular =
+          std::clamp((float(-dot(light.direction_world, Vec3d(to_light))) - light.cos_outer) * scale, 0.0f, 1.0f);
       factor *= angular * angular;
     }
     return light.intensity * factor;

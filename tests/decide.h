@@ -143,8 +143,9 @@ inline FloatLine awkward_line(Rng& rng, int kind, const Vec3d& target, const Vec
       const Vec3d d{at(0), at(1), at(2)};
       return {nudged(rng, Vec3f(target - d * uniform(rng, -2, 2))), Vec3f(d)};
     }
-    case 5: return {nudged(rng, Vec3f(target)), Vec3f(uniform_vector(rng, -1, 1))};  // leaves the surface
-    default: {  // a lattice: what is met is met exactly
+    case 5:
+      return {nudged(rng, Vec3f(target)), Vec3f(uniform_vector(rng, -1, 1))};  // leaves the surface
+    default: {                                                                 // a lattice: what is met is met exactly
       const Vec3f origin = Vec3f(middle) + uniform_lattice(rng, 4);
       return {origin, Vec3f(target) - origin};
     }
