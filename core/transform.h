@@ -33,18 +33,6 @@ template <class T>
   return transform_vector(m, p) + m.origin;
 }
 
-/// The direction is not renormalised, so that distances along the ray mean the same in both spaces.
-template <class T>
-[[nodiscard]] constexpr Ray<T> transform_ray(const Affine3<T>& m, const Ray<T>& ray) {
-  return {transform_point(m, ray.origin), transform_vector(m, ray.direction), ray.t_min, ray.t_max};
-}
-
-/// n -> (M^-1)^T n up to a positive factor, from the inverse `b_from_a`; not normalised.
-template <class T>
-[[nodiscard]] constexpr Vec3<T> transform_normal_by_inverse(const Affine3<T>& b_from_a, const Vec3<T>& n_b) {
-  return {dot(b_from_a.x, n_b), dot(b_from_a.y, n_b), dot(b_from_a.z, n_b)};
-}
-
 template <class T>
 [[nodiscard]] constexpr T determinant(const Affine3<T>& m) {
   return dot(m.x, cross(m.y, m.z));
