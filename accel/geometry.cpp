@@ -18,6 +18,31 @@ void move_to_world(TriangleMesh& part, const Affine3d& world_from_object) {
     for (auto& triangle : part.triangles) std::swap(triangle[1], triangle[2]);
 }
 
+std::array<Vec3d, 8> corners(const Bounds3d& b) {
+  std::array<Vec3d, 8> points;
+  for (size_t k = 0; k < points.size(); ++k)
+    points[k] = {k & 1 ? b.upper.x : b.lower.x, k & 2 ? b.upper.y : b.lower.y, k & 4 ? b.upper.z : b.lower.z};
+  return points;
+}
+
+/// The vertices that triangles use; of a mesh that is placed so often that these would be too many, its box's corners.
+std::vector<Vec3d> outline(const Mesh& mesh, uint64_t uses) {
+  constexpr uint64_t kManyPoints = uint64_t{1} << 24;
+  std::vector<Vec3d> points;
+  for (const TriangleMesh& part : mesh.parts) {
+    std::vector<bool> used(part.positions.size(), false);
+    for (const auto& triangle : part.triangles)
+      for (const uint32_t i : triangle) used[i] = true;
+    for (size_t i = 0; i < used.size(); ++i)
+      if (used[i]) points.emplace_back(part.positions[i]);
+  }
+  if (uses <= 1 || points.size() * uses <= kManyPoints) return points;
+  Bounds3d box;
+  for (const Vec3d& p : points) extend(box, p);
+  const auto box_corners = corners(box);
+  return {box_corners.begin(), box_corners.end()};
+}
+
 }  // namespace
 
 void bake_single_instances(Geometry& geometry) {
@@ -32,19 +57,26 @@ void bake_single_instances(Geometry& geometry) {
   }
 }
 
+void visit_outline(const Geometry& geometry, const std::function<void(const Vec3d& p_world)>& visit) {
+  std::vector<uint64_t> uses(geometry.meshes.size(), 0);
+  for (const MeshInstance& instance : geometry.mesh_instances) ++uses[instance.mesh];
+  std::vector<std::vector<Vec3d>> outlines(geometry.meshes.size());
+  for (size_t k = 0; k < outlines.size(); ++k)
+    if (uses[k] > 0) outlines[k] = outline(geometry.meshes[k], uses[k]);
+  const auto visit_finite = [&](const Affine3d& world_from_object, const Vec3d& p_object) {
+    if (const Vec3d p = transform_point(world_from_object, p_object); is_finite(p)) visit(p);
+  };
+  for (const MeshInstance& instance : geometry.mesh_instances)
+    for (const Vec3d& p : outlines[instance.mesh]) visit_finite(instance.world_from_object, p);
+  for (const ShapeInstance& placed : geometry.shape_instances)
+    for (const Vec3d& p :
+         corners(std::visit([](const auto& shape) { return bounds(shape); }, geometry.shapes[placed.shape])))
+      visit_finite(placed.world_from_object, p);
+}
+
 Bounds3d world_bounds(const Geometry& geometry) {
   Bounds3d world;
-  for (const MeshInstance& instance : geometry.mesh_instances)
-    for (const TriangleMesh& part : geometry.meshes[instance.mesh].parts)
-      for (const auto& triangle : part.triangles)
-        for (const uint32_t i : triangle) {
-          const Vec3d p = transform_point(instance.world_from_object, Vec3d(part.positions[i]));
-          if (is_finite(p)) extend(world, p);
-        }
-  for (const ShapeInstance& placed : geometry.shape_instances) {
-    const Bounds3d object = std::visit([](const auto& shape) { return bounds(shape); }, geometry.shapes[placed.shape]);
-    extend(world, transform_bounds(placed.world_from_object, object));
-  }
+  visit_outline(geometry, [&](const Vec3d& p) { extend(world, p); });
   return world;
 }
 

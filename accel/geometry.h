@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -72,7 +73,12 @@ struct Geometry {
 /// outside stays outside. Meshes placed never are emptied.
 void bake_single_instances(Geometry& geometry);
 
-/// The smallest box around everything placed, in world space; empty for no finite geometry.
+/// Visits finite points whose convex hull holds everything placed: the vertices that triangles use, and the corners of
+/// the object-space boxes of shapes and of meshes that are placed very often.
+void visit_outline(const Geometry& geometry, const std::function<void(const Vec3d& p_world)>& visit);
+
+/// A box around everything placed, in world space, the smallest one around `visit_outline`'s points; empty for no
+/// finite geometry.
 [[nodiscard]] Bounds3d world_bounds(const Geometry& geometry);
 
 [[nodiscard]] inline bool is_shape(const Geometry& geometry, uint32_t object) {

@@ -92,7 +92,7 @@ int run_ladder(const std::string& file, int width, int height) {
   scene.images = decode_images(loaded.encoded, print_warning);
   bake_single_instances(scene.geometry);
   const Camera camera =
-      scene.cameras.empty() ? framing_camera(world_bounds(scene.geometry), double(width) / height) : scene.cameras[0];
+      scene.cameras.empty() ? framing_camera(scene.geometry, double(width) / height) : scene.cameras[0];
   std::vector<RayWave> shares;
   for (size_t share = 0; share < kShares; ++share) {
     RayWave rays = share_of_camera_rays(camera, width, height, share);

@@ -48,7 +48,7 @@ struct PhaseSeconds {
 
 Camera pick_camera(const Scene& scene, const std::string& wanted, double aspect) {
   if (wanted.empty())
-    return scene.cameras.empty() ? framing_camera(world_bounds(scene.geometry), aspect) : scene.cameras[0];
+    return scene.cameras.empty() ? framing_camera(scene.geometry, aspect) : scene.cameras[0];
   for (size_t i = 0; i < scene.cameras.size(); ++i)
     if (std::to_string(scene.camera_index[i]) == wanted) return scene.cameras[i];
   std::vector<std::string> names, descriptions;

@@ -25,7 +25,7 @@ struct Field {
         geometry(form == "quadric" ? as_quadrics(spheres) : spheres),
         ours(geometry, {}),
         embree(spheres),
-        camera(camera_wave(framing_camera(world_bounds(geometry), 1), kImageSize)) {
+        camera(camera_wave(framing_camera(geometry, 1), kImageSize)) {
     HitWave hits;
     ours.intersect(camera, Coherence::coherent, hits);
     shadow = shadow_wave(camera, hits, {3, 5, 4});

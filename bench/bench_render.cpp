@@ -19,7 +19,7 @@ constexpr int kRaysPerTask = 1024;  // one cell's
 /// The scene in both forms.
 struct Stage {
   Scene scene = spheres_over_hills();
-  Camera camera = framing_camera(world_bounds(scene.geometry), 1);
+  Camera camera = framing_camera(scene.geometry, 1);
   std::vector<Opacity> opacity;
   SurfaceFilter filter = surface_filter(scene, opacity);
   AcceleratedScene ours{scene.geometry, filter};

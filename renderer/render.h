@@ -46,8 +46,8 @@ struct RenderResult {
 [[nodiscard]] RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, const Camera& camera,
                                   const RenderOptions& options, RenderControl& control);
 
-/// A three-quarter view of everything in `bounds` at the aspect ratio width / height.
-[[nodiscard]] Camera framing_camera(const Bounds3d& bounds, double aspect);
+/// A three-quarter view of everything placed, as large as fits, for the aspect ratio width / height.
+[[nodiscard]] Camera framing_camera(const Geometry& geometry, double aspect);
 
 /// Key, fill and rim light about the camera, neutral, with ambient light and a grey background where the scene names
 /// none.

@@ -1,11 +1,14 @@
 // Views and light for scenes that bring none of their own.
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "renderer/render.h"
 
 namespace alhazen {
 namespace {
+
+constexpr double kFilled = 0.94;  // of the picture's width or height, by what is framed
 
 /// At `eye`, looking along `forward`, +y up.
 Affine3d look_along(const Vec3d& eye, const Vec3d& forward) {
@@ -15,25 +18,28 @@ Affine3d look_along(const Vec3d& eye, const Vec3d& forward) {
 
 }  // namespace
 
-Camera framing_camera(const Bounds3d& bounds, double aspect) {
+Camera framing_camera(const Geometry& geometry, double aspect) {
   Camera camera;
   camera.name = "framing";
   camera.yfov = 35 * std::numbers::pi / 180;
-  const bool empty = is_empty(bounds);
-  const Vec3d center = empty ? Vec3d{} : (bounds.lower + bounds.upper) * 0.5;
-  const Vec3d half = empty ? Vec3d{1, 1, 1} : bounds.upper - center;
-  camera.world_from_camera = look_along(center, Vec3d{-0.55, -0.38, -0.8});
-  // Step back until every corner of the box is inside the view.
+  camera.world_from_camera = look_along({}, Vec3d{-0.55, -0.38, -0.8});
   const Affine3d& m = camera.world_from_camera;
-  const double tan_y = std::tan(camera.yfov / 2) * 0.94, tan_x = tan_y * aspect;
-  double distance = 0;
-  for (int k = 0; k < 8; ++k) {
-    const Vec3d corner{k & 1 ? half.x : -half.x, k & 2 ? half.y : -half.y, k & 4 ? half.z : -half.z};
-    const double needed = std::max(std::abs(dot(corner, m.x)) / tan_x, std::abs(dot(corner, m.y)) / tan_y);
-    distance = std::max(distance, needed + dot(corner, m.z));
-  }
-  if (!(distance > 0)) distance = 1;
-  camera.world_from_camera.origin = center + m.z * distance;
+  const double tan_y = std::tan(camera.yfov / 2) * kFilled, tan_x = tan_y * aspect;
+  // A point p is between two opposite sides of the view from c where |p.x - c.x| <= (c.z - p.z) tan_x, in the camera's
+  // axes: right of one where p.x + p.z tan_x <= c.x + c.z tan_x, and so on. The sides rest on the points.
+  constexpr double kNowhere = -std::numeric_limits<double>::infinity();
+  double right = kNowhere, left = kNowhere, top = kNowhere, bottom = kNowhere, front = kNowhere;
+  visit_outline(geometry, [&](const Vec3d& p_world) {
+    const Vec3d p{dot(p_world, m.x), dot(p_world, m.y), dot(p_world, m.z)};
+    right = std::max(right, p.z * tan_x + p.x), left = std::max(left, p.z * tan_x - p.x);
+    top = std::max(top, p.z * tan_y + p.y), bottom = std::max(bottom, p.z * tan_y - p.y);
+    front = std::max(front, p.z);
+  });
+  if (front == kNowhere) right = left = top = bottom = front = 0;  // nothing to see
+  double z = std::max((right + left) / (2 * tan_x), (top + bottom) / (2 * tan_y));
+  const double x = (right - left) / 2, y = (top - bottom) / 2;
+  if (!(z > front)) z = front + 1;  // a point, or a line along the view: any distance does
+  camera.world_from_camera.origin = m.x * x + m.y * y + m.z * z;
   return camera;
 }
 

@@ -64,8 +64,10 @@ Scene random_scene(uint32_t seed) {
 }
 
 Camera perspective_camera() {
-  Camera camera = framing_camera({{-5, -5, -5}, {5, 5, 5}}, 4.0 / 3);
-  return camera;
+  Geometry ten_units;
+  ten_units.shapes.push_back(Box{{10, 10, 10}});
+  ten_units.shape_instances.push_back({0, 0, 0, {}});
+  return framing_camera(ten_units, 4.0 / 3);
 }
 Camera orthographic_camera() {
   Camera camera = perspective_camera();
@@ -247,7 +249,7 @@ TEST(ReferenceAccelerators, NodeTreeLeavesOutWholeBranches) {
     scene.geometry.shape_instances.push_back({0, 10 + i, 0, m});
     scene.geometry.parent_of_node.push_back(i % 10);
   }
-  const Camera camera = framing_camera(world_bounds(scene.geometry), 1);
+  const Camera camera = framing_camera(scene.geometry, 1);
   const Subject subject(scene, camera);
   const RayWave rays = camera_rays(camera, 32, 32);
   EXPECT_LT(closest(subject.rungs[2], rays).counts.boxes, closest(subject.rungs[1], rays).counts.boxes / 3);

@@ -69,7 +69,7 @@ RenderResult picture(const Scene& scene, const Camera& camera, const RenderOptio
 TEST(Render, SameBitsForAnyThreadsAndTiles) {
   for (const bool instanced : {false, true}) {
     const Scene scene = spheres_over_ground(1, instanced);
-    const Camera camera = framing_camera(world_bounds(scene.geometry), 1.5);
+    const Camera camera = framing_camera(scene.geometry, 1.5);
     RenderOptions options;
     options.width = 150, options.height = 100, options.samples = 2, options.threads = 1, options.tile_size = 32;
     const std::vector<float> reference = picture(scene, camera, options).color.pixels;
