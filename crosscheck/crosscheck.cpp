@@ -6,6 +6,7 @@
 
 #include "accel/shape_hits.h"
 #include "core/fork_join.h"
+#include "crosscheck/native_subject.h"
 
 namespace alhazen::crosscheck {
 namespace {
@@ -57,7 +58,7 @@ class ChunkCheck {
 
  private:
   void make_rays(const Judge& judge, uint64_t kind) {
-    const RayMaker maker(result_.subject, judge, options_.camera_world);
+    const RayMaker maker(result_.subject, judge);
     for (uint64_t k = chunk_.first; k < chunk_.end; ++k) {
       Random random{options_.seed, kind, uint64_t(population_), k, 2};
       rays_.push_back(maker.ray(population_, random));
@@ -73,7 +74,10 @@ class ChunkCheck {
     (options_.intersector ? plugin_party(*options_.intersector) : custom_party(result_.subject))->answer(rays, a_);
     const DoubtCounts after = doubt_counts();
     result_.tally.a_quads = after.quad - before.quad, result_.tally.a_rationals = after.exact - before.exact;
-    if (const auto native = native_party(result_.subject, robust)) native->answer(rays, b_);
+    const auto native = native_subject(result_.subject);
+    if (!native) return;
+    if (const auto party = native_party(native->subject, robust)) party->answer(rays, b_);
+    if (native->rounded) native_judge_ = std::make_unique<Judge>(native->subject);
   }
 
   void judge_ray(const Judge& judge, uint64_t k) {
@@ -84,6 +88,7 @@ class ChunkCheck {
            .a = a_[k],
            .b = {},
            .truth = {},
+           .b_truth = {},
            .b_fault = {},
            .verdict = Verdict::out_of_domain};
     if (!b_.empty() && b_[k].asked) c.b = b_[k];
@@ -96,7 +101,8 @@ class ChunkCheck {
     c.truth = judge.closest(c.ray);
     if (c.truth.hit && !std::isfinite(c.truth.t)) return;  // further than floats reach
     c.a_fault = fault_of(c.a, c.truth, options_.t_tolerance_a);
-    if (c.b) c.b_fault = fault_of(*c.b, c.truth, options_.t_tolerance_b);
+    if (c.b && native_judge_) c.b_truth = native_judge_->closest(c.ray);
+    if (c.b) c.b_fault = fault_of(*c.b, truth_for_b(c), options_.t_tolerance_b);
     c.verdict = verdict_of(c.a_fault, c.b_fault, c.truth);
     if (c.index % kSecondInstance == 0 && !same(c.truth, judge.closest_exactly(c.ray)))
       c.verdict = Verdict::unexplained;
@@ -110,7 +116,7 @@ class ChunkCheck {
     measure_t(c.a, c.truth, tally.a_judged, tally.a_exact, tally.a_worst);
     if (!c.b_fault) return;
     ++tally.b_asked, ++tally.b_faults[size_t(*c.b_fault)];
-    measure_t(*c.b, c.truth, tally.b_judged, tally.b_exact, tally.b_worst);
+    measure_t(*c.b, truth_for_b(c), tally.b_judged, tally.b_exact, tally.b_worst);
   }
 
   Population population_;
@@ -119,6 +125,7 @@ class ChunkCheck {
   ChunkResult& result_;
   std::vector<Rayf> rays_;
   std::vector<Answer> a_, b_;
+  std::unique_ptr<Judge> native_judge_;  // where B holds another surface
 };
 
 std::vector<Chunk> chunks_of(const Family& family, const Options& options) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 
 #include "crosscheck/population.h"
 #include "crosscheck/verdict.h"
@@ -12,10 +13,9 @@ namespace alhazen::crosscheck {
 struct Options {
   uint64_t rays = 10000;  // of each population, for each family
   uint64_t seed = 1;
-  std::optional<uint64_t> only = {};  // the number of the one ray to judge
-  double t_tolerance_a = 1;           // in floats
-  double t_tolerance_b = 16;          // as many as Embree's own tests allow
-  std::optional<Vec3d> camera_world = {};
+  std::optional<uint64_t> only = {};                 // the number of the one ray to judge
+  double t_tolerance_a = 1;                          // in floats
+  double t_tolerance_b = 16;                         // as many as Embree's own tests allow
   const alhazen_intersector* intersector = nullptr;  // in the place of A
 };
 
@@ -28,10 +28,14 @@ struct Case {
   Answer a;
   std::optional<Answer> b;
   Judgement truth;
+  std::optional<Judgement> b_truth;  // of the surface in floats, where that is another one
   Fault a_fault = Fault::none;
   std::optional<Fault> b_fault;
   Verdict verdict;
 };
+
+/// What B is measured by.
+[[nodiscard]] inline const Judgement& truth_for_b(const Case& c) { return c.b_truth ? *c.b_truth : c.truth; }
 
 /// Counts for one family and population.
 struct Tally {

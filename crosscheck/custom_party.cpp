@@ -50,7 +50,8 @@ class ShapeParty final : public Party {
 
 class TriangleParty final : public Party {
  public:
-  explicit TriangleParty(const Triangle& triangle) : scene_({&triangle, 1}), normal_(normal(triangle, {}, 0)) {}
+  TriangleParty(const Triangle& triangle, const Affine3d& world_from_object)
+      : scene_({&triangle, 1}, world_from_object), normal_(normal(triangle, {}, 0)) {}
 
   void answer(std::span<const Rayf> rays, std::vector<Answer>& answers) override {
     answers.assign(rays.size(), {});
@@ -70,7 +71,7 @@ std::unique_ptr<Party> custom_party(const Subject& subject) {
   return std::visit(
       [&](const auto& s) -> std::unique_ptr<Party> {
         if constexpr (std::is_same_v<std::decay_t<decltype(s)>, Triangle>)
-          return std::make_unique<TriangleParty>(s);  // families hold triangles in world space
+          return std::make_unique<TriangleParty>(s, subject.world_from_object);
         else
           return std::make_unique<ShapeParty>(Shape(s), subject.world_from_object);
       },

@@ -75,12 +75,13 @@ Rayf RayMaker::silhouette_ray(Random& random) const {
 }
 
 Rayf RayMaker::lattice_ray(Random& random) const {
-  const Vec3d middle = subject_->world_from_object.origin + center();
+  const double step = subject_->lattice_step;
+  const Vec3d middle = transform_point(subject_->world_from_object, center()) / step;
   const Vec3d whole{std::round(middle.x), std::round(middle.y), std::round(middle.z)};
   const Vec3d origin = whole + random.on_lattice(16);
   Vec3d direction = random.coin() ? random.on_lattice(4) : whole + random.on_lattice(8) - origin;
   if (direction == Vec3d{}) direction = {1, 0, 0};
-  return {Vec3f(origin), Vec3f(direction)};
+  return {Vec3f(origin * step), Vec3f(direction * step)};
 }
 
 Rayf RayMaker::axis_ray(Random& random) const {
@@ -145,11 +146,6 @@ Rayf RayMaker::ray(Population population, Random& random) const {
     case Population::special: {
       const Vec3d origin = random.coin() ? center() : feature();
       return through(origin, random.coin() ? feature() : in_box(1, random), random);
-    }
-    case Population::camera: {
-      const Vec3d target = transform_point(subject_->world_from_object, in_box(1, random));
-      const Vec3f origin(camera_world_.value_or(Vec3d{}));
-      return {origin, Vec3f(normalize(target - Vec3d(origin)))};
     }
     default:
       return uniform_ray(random);

@@ -1,7 +1,6 @@
 // Kinds of rays: everyday ones, and those that intersectors get wrong.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,17 +19,17 @@ enum class Population : uint8_t {
   spawned,     // from the surface, off by up to four floats
   inside,      // from within the subject's box
   special,     // from the centre, or a point on an edge, rim or apex itself
-  camera,      // from a scene's camera
+  camera,      // the primary rays of a scene's picture, see scene_check.h
 };
 
 inline constexpr int kPopulations = 11;
 [[nodiscard]] const char* name_of(Population population);
 
-/// Rays of one subject. `camera_world`: for camera rays.
+/// Rays of one subject: every population but `camera`.
 class RayMaker {
  public:
-  RayMaker(const Subject& subject, const Judge& judge, std::optional<Vec3d> camera_world = {})
-      : subject_(&subject), judge_(&judge), camera_world_(camera_world), box_(bounds_of(subject.surface)) {}
+  RayMaker(const Subject& subject, const Judge& judge)
+      : subject_(&subject), judge_(&judge), box_(bounds_of(subject.surface)) {}
 
   [[nodiscard]] Rayf ray(Population population, Random& random) const;
 
@@ -48,7 +47,6 @@ class RayMaker {
 
   const Subject* subject_;
   const Judge* judge_;
-  std::optional<Vec3d> camera_world_;
   Bounds3d box_;
 };
 

@@ -86,7 +86,8 @@ std::string record(const std::string& family, const Case& c, const Options& opti
             {"ray", to_json(c.ray)},
             {"subject", to_json(*c.subject)},
             {"A", answer_json(c.a, c.truth, c.a_fault)}};
-  if (c.b && c.b_fault) json["B"] = answer_json(*c.b, c.truth, *c.b_fault);
+  if (c.b && c.b_fault) json["B"] = answer_json(*c.b, truth_for_b(c), *c.b_fault);
+  if (c.b_truth) json["J_of_surface_in_floats"] = truth_json(*c.b_truth);
   json["J"] = truth_json(c.truth);
   json["embree"] = embree_version();
   json["again"] = reproduction(family, c, options.seed, source);
@@ -94,16 +95,16 @@ std::string record(const std::string& family, const Case& c, const Options& opti
 }
 
 void Faults::add(const std::string& family, const Case& c, const std::string& command) {
-  const auto note = [&](Table& table, Fault fault, const Answer& answer) {
+  const auto note = [&](Table& table, Fault fault, const Answer& answer, const Judgement& truth) {
     if (fault == Fault::none) return;
     Entry& entry = table[{family, fault}];
     if (entry.count++ > 0) return;
     entry.example = command;
     if (fault == Fault::wrong_t)
-      entry.example += formatted("  (t %.9g, truly %.9g)", double(answer.t), double(c.truth.t));
+      entry.example += formatted("  (t %.9g, truly %.9g)", double(answer.t), double(truth.t));
   };
-  note(a_, c.a_fault, c.a);
-  if (c.b_fault) note(b_, *c.b_fault, *c.b);
+  note(a_, c.a_fault, c.a, c.truth);
+  if (c.b_fault) note(b_, *c.b_fault, *c.b, truth_for_b(c));
 }
 
 std::string Faults::text() const {

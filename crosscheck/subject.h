@@ -27,6 +27,8 @@ using Surface = std::variant<Sphere, Cylinder, Disk, Box, Polygon, Quadric, Comp
 struct Subject {
   Surface surface;
   Affine3d world_from_object;
+  std::string origin = {};  // where it comes from, for records; empty: made up
+  double lattice_step = 1;  // of the rays on the lattice: a power of two
 };
 
 [[nodiscard]] inline Bounds3d bounds_of(const Surface& surface) {

@@ -10,15 +10,25 @@
 namespace alhazen::crosscheck {
 namespace {
 
+struct PlacedTriangles {
+  std::span<const Triangle> triangles;
+  Affine3d world_from_object;
+};
+
 template <class T>
-ObjectLine<T> line_of(const Rayf& ray) {
-  return {Vec3<T>(Vec3d(ray.origin)), Vec3<T>(Vec3d(ray.direction)), {}, {}};
+ObjectLine<T> line_of(const Rayf& ray, const Affine3d& m) {
+  const Vec3<T> origin(Vec3d(ray.origin)), direction(Vec3d(ray.direction));
+  if (m == Affine3d{}) return {origin, direction, {}, {}};
+  if constexpr (std::is_same_v<T, Quad>)
+    return object_line(quad_line_map({&m, 1}), origin, direction);
+  else
+    return object_line(line_map(m), origin, direction);
 }
 
 /// Sure of hit or miss, and of the float nearest to t.
 template <class T>
-bool try_hit(const Triangle& triangle, const Rayf& ray, std::optional<float>& t) {
-  const LineCrossings<T> found = crossings(triangle, line_of<T>(ray));
+bool try_hit(const Triangle& triangle, const ObjectLine<T>& line, std::optional<float>& t) {
+  const LineCrossings<T> found = crossings(triangle, line);
   if (found.doubtful) return false;
   const auto& c = found.at[0];
   if (!c.present) return true;
@@ -27,16 +37,22 @@ bool try_hit(const Triangle& triangle, const Rayf& ray, std::optional<float>& t)
   return true;
 }
 
+/// Around the placed triangle, larger by the roundings of the map.
 void write_bounds(const RTCBoundsFunctionArguments* args) {
-  const Bounds3d b = bounds(static_cast<const Triangle*>(args->geometryUserPtr)[args->primID]);
-  const auto down = [](double x) { return std::nextafter(float(x), -HUGE_VALF); };
-  const auto up = [](double x) { return std::nextafter(float(x), HUGE_VALF); };
+  const auto& placed = *static_cast<const PlacedTriangles*>(args->geometryUserPtr);
+  const Bounds3d b = transform_bounds(placed.world_from_object, bounds(placed.triangles[args->primID]));
+  const Vec3d& origin = placed.world_from_object.origin;
+  const bool exact = placed.world_from_object == Affine3d{};
+  const double pad = exact ? 0 : 0x1p-48 * max_component(max(abs(origin), max(abs(b.lower), abs(b.upper))));
+  const auto down = [&](double x) { return std::nextafter(float(x - pad), -HUGE_VALF); };
+  const auto up = [&](double x) { return std::nextafter(float(x + pad), HUGE_VALF); };
   *args->bounds_o = {down(b.lower.x), down(b.lower.y), down(b.lower.z), 0,
                      up(b.upper.x),   up(b.upper.y),   up(b.upper.z),   0};
 }
 
 void intersect(const RTCIntersectFunctionNArguments* args) {
-  const Triangle& triangle = static_cast<const Triangle*>(args->geometryUserPtr)[args->primID];
+  const auto& placed = *static_cast<const PlacedTriangles*>(args->geometryUserPtr);
+  const Triangle& triangle = placed.triangles[args->primID];
   RTCRayN* ray = RTCRayHitN_RayN(args->rayhit, args->N);
   RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
   for (unsigned i = 0; i < args->N; ++i) {
@@ -47,7 +63,7 @@ void intersect(const RTCIntersectFunctionNArguments* args) {
                    {RTCRayN_dir_x(ray, n, i), RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i)},
                    RTCRayN_tnear(ray, n, i),
                    RTCRayN_tfar(ray, n, i)};
-    const std::optional<float> t = hit_triangle(triangle, one);
+    const std::optional<float> t = hit_triangle(triangle, one, placed.world_from_object);
     const bool later = t && *t == one.t_max && RTCHitN_geomID(hit, n, i) != RTC_INVALID_GEOMETRY_ID &&
                        RTCHitN_primID(hit, n, i) < args->primID;
     if (t && !later) embree::accept(args, i, *t);
@@ -56,26 +72,28 @@ void intersect(const RTCIntersectFunctionNArguments* args) {
 
 }  // namespace
 
-std::optional<float> hit_triangle(const Triangle& triangle, const Rayf& ray) {
+std::optional<float> hit_triangle(const Triangle& triangle, const Rayf& ray, const Affine3d& m) {
   if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == Vec3f{}) return {};
   std::optional<float> t;
-  const bool by_double = try_hit<double>(triangle, ray, t);
+  const bool by_double = try_hit(triangle, line_of<double>(ray, m), t);
   if (!by_double) ++doubt_counts().quad;
-  if (!by_double && !try_hit<Quad>(triangle, ray, t)) {
+  if (!by_double && !try_hit(triangle, line_of<Quad>(ray, m), t)) {
     ++doubt_counts().exact;
-    for (const ExactCrossing& c : exact_crossings(triangle, exact_line(ray))) t = to_float(c.t);
+    for (const ExactCrossing& c : exact_crossings(triangle, exact_line({&m, 1}, exact_line(ray)))) t = to_float(c.t);
   }
   return t && *t >= ray.t_min && *t <= ray.t_max ? t : std::nullopt;
 }
 
 struct TriangleScene::Impl {
+  PlacedTriangles placed;
   EmbreeScene scene{true};
 };
 
-TriangleScene::TriangleScene(std::span<const Triangle> triangles) : impl_(std::make_unique<Impl>()) {
+TriangleScene::TriangleScene(std::span<const Triangle> triangles, const Affine3d& world_from_object)
+    : impl_(std::make_unique<Impl>(PlacedTriangles{triangles, world_from_object})) {
   RTCGeometry g = embree::new_geometry(impl_->scene.device(), RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(g, unsigned(triangles.size()));
-  rtcSetGeometryUserData(g, const_cast<Triangle*>(triangles.data()));
+  rtcSetGeometryUserData(g, &impl_->placed);
   rtcSetGeometryBoundsFunction(g, write_bounds, nullptr);
   rtcSetGeometryIntersectFunction(g, intersect);
   impl_->scene.attach(g);

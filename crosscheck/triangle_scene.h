@@ -8,16 +8,18 @@
 
 #include "accel/shapes/triangle.h"
 #include "core/ray.h"
+#include "core/transform.h"
 
 namespace alhazen::crosscheck {
 
 /// The hit of one triangle with t_min <= t <= t_max, by double, binary128 or rational numbers: whichever is sure.
-[[nodiscard]] std::optional<float> hit_triangle(const Triangle& triangle, const Rayf& ray);
+[[nodiscard]] std::optional<float> hit_triangle(const Triangle& triangle, const Rayf& ray_world,
+                                                const Affine3d& world_from_object = {});
 
-/// The triangles, in world space, must outlive it.
+/// The triangles, all placed by one map, must outlive it.
 class TriangleScene {
  public:
-  explicit TriangleScene(std::span<const Triangle> triangles);
+  explicit TriangleScene(std::span<const Triangle> triangles, const Affine3d& world_from_object = {});
   ~TriangleScene();
 
   /// Calls found(ray, triangle, t) for each ray that hits something: the closest, of equally close ones the first.
