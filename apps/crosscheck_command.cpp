@@ -4,6 +4,7 @@
 #include <tbb/info.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -26,10 +27,11 @@ struct Arguments {
   int threads = 0;
   uint64_t only = 0;
   bool has_only = false;
-  double t_ulp = 1;
+  double t_ulp = 1, rays = 1e5;
 };
 
 std::atomic<bool> g_stop{false};
+constexpr double kLargestCount = 1e15;      // of rays: far more than can be judged, and exact as a double
 constexpr uint64_t kLargestRecords = 1000;  // of each family and population
 
 std::vector<std::string> names_of(const std::vector<Family>& families) {
@@ -68,8 +70,9 @@ class RecordFile {
     out_.open(file);
     if (!out_) throw WriteError(file, "cannot be written");
   }
+  [[nodiscard]] bool is_wanted() const { return !name_.empty(); }
   void add(const std::string& line) {
-    if (!name_.empty() && !(out_ << line << '\n')) throw WriteError(name_, "cannot be written");
+    if (!(out_ << line << '\n')) throw WriteError(name_, "cannot be written");
   }
   void close() {
     if (!name_.empty() && !out_.flush()) throw WriteError(name_, "cannot be written");
@@ -99,7 +102,8 @@ struct Session {
       if (options.only) std::printf("%s\n", record(family.name, c, options, source).c_str());
       if (!is_disagreement(c)) return;
       faults.add(family.name, c, reproduction(family.name, c, options.seed, source));
-      if (is_failure(c.verdict) || recorded++ < kLargestRecords) records.add(record(family.name, c, options, source));
+      if (records.is_wanted() && (is_failure(c.verdict) || recorded++ < kLargestRecords))
+        records.add(record(family.name, c, options, source));
     };
     const Tally tally = check(family, population, arguments.options, observer);
     std::printf("%s", table_row(family.name, name_of(population), tally).c_str());
@@ -124,6 +128,7 @@ int run_crosscheck(Arguments& arguments) {
     families = chosen_families(built_in_families(), arguments.shape);
   }
   const std::vector<Population> populations = chosen_populations(arguments.population, false);
+  options.rays = uint64_t(std::ceil(arguments.rays / double(families.size())));
   const int threads = arguments.threads > 0 ? arguments.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
   stop_on_signal(g_stop);
@@ -152,8 +157,15 @@ Command add_crosscheck_command(CLI::App& program) {
   command->add_option("--population", arguments->population, "One kind of rays, or all")
       ->type_name("NAME")
       ->capture_default_str();
-  command->add_option("--rays", arguments->options.rays, "Rays of each population for each shape")
+  command
+      ->add_option("--rays", arguments->rays, "Rays of each population, shared among the shapes; 1e6 is a number, too")
       ->type_name("N")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            const double n = std::strtod(text.c_str(), nullptr);
+            return n >= 1 && n <= kLargestCount ? "" : "expected 1 to 1e15, found " + text;
+          },
+          ""))
       ->capture_default_str();
   command->add_option("--seed", arguments->options.seed, "The same seed gives the same rays")
       ->type_name("S")
@@ -180,7 +192,8 @@ Command add_crosscheck_command(CLI::App& program) {
       "write, 130 or 143 interrupted, 1 other.\n"
       "\n"
       "Examples:\n"
-      "  alhazen crosscheck --shape sphere --population silhouette --rays 1000000\n"
+      "  alhazen crosscheck --shape sphere --population silhouette --rays 1e6\n"
+      "  alhazen crosscheck --shape all --rays 1e6\n"
       "  alhazen crosscheck --intersector ./naive_sphere.so --json errors.jsonl");
   return {command, [arguments] { return run_crosscheck(*arguments); }};
 }

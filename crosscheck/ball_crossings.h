@@ -1,48 +1,43 @@
-// Where a line crosses a surface, in interval arithmetic: the judge's first instance.
+// Where a line crosses a surface, in interval arithmetic: the judge's first two instances.
 #pragma once
 
-#include <set>
 #include <vector>
 
-#include "crosscheck/ball.h"
+#include "crosscheck/ball_map.h"
 #include "crosscheck/subject.h"
 
 namespace alhazen::crosscheck {
 
-struct BallLine {
-  Vec3<Ball> origin, direction;
-};
-
-/// The inverse of a chain of maps, the outermost first.
-class BallMap {
- public:
-  explicit BallMap(std::span<const Affine3d> chain);
-  [[nodiscard]] BallLine operator()(BallLine line) const;
-
- private:
-  struct Step {
-    Vec3<Ball> row_x, row_y, row_z, center;
-  };
-  std::vector<Step> steps_;  // identities are left out
-};
-
+template <class N>
 struct BallCrossing {
-  Ball t;
+  Ball<N> t;
   int face;
 };
 
-/// A surface with what its crossings need again and again.
+/// A surface with what its crossings need again and again. N is double or DoubleDouble.
+template <class N>
 class BallSurface {
  public:
+  /// The surface must outlive it.
   explicit BallSurface(const Surface& surface);
 
-  /// Ascending. Throws InDoubt where intervals cannot tell.
-  [[nodiscard]] std::vector<BallCrossing> crossings(const BallLine& line) const;
+  /// Appends them, ascending. Throws InDoubt where intervals cannot tell.
+  void append_crossings(const BallLine<N>& line, std::vector<BallCrossing<N>>& out) const;
+
+  /// A polygon in plane coordinates.
+  struct PlanePolygon {
+    struct Point {
+      Ball<N> x, y;
+    };
+    Vec3<Ball<N>> center;
+    Ball<N> slope_x, slope_y, offset;
+    std::vector<std::pair<Point, Point>> edges;
+  };
 
  private:
   const Surface* surface_;
-  std::vector<BallMap> leaf_maps_;                 // composites
-  std::set<std::pair<uint32_t, uint32_t>> edges_;  // polygons
+  std::vector<BallMap<N>> leaf_maps_;  // composites
+  PlanePolygon polygon_;
 };
 
 }  // namespace alhazen::crosscheck

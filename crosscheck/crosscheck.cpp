@@ -11,8 +11,8 @@
 namespace alhazen::crosscheck {
 namespace {
 
-constexpr uint64_t kSecondInstance = 256;  // one ray in so many is judged by rational numbers as well
-constexpr size_t kChunksAtOnce = 32;       // bounds the memory
+constexpr uint64_t kSecondInstance = 1024;  // one ray in so many is judged by rational numbers as well
+constexpr size_t kChunksAtOnce = 32;        // bounds the memory
 
 uint64_t hashed(const std::string& text) {
   uint64_t h = 0xcbf29ce484222325u;  // FNV-1a
@@ -111,7 +111,7 @@ class ChunkCheck {
   void count(const Case& c) {
     Tally& tally = result_.tally;
     ++tally.rays, ++tally.verdicts[size_t(c.verdict)];
-    tally.hits += c.truth.hit, tally.judge_rationals += c.truth.by_rationals;
+    tally.hits += c.truth.hit, tally.judge_rationals += c.truth.by == JudgedBy::rationals;
     ++tally.a_faults[size_t(c.a_fault)];
     measure_t(c.a, c.truth, tally.a_judged, tally.a_exact, tally.a_worst);
     if (!c.b_fault) return;

@@ -11,7 +11,7 @@
 namespace alhazen::crosscheck {
 
 struct Options {
-  uint64_t rays = 10000;  // of each population, for each family
+  uint64_t rays = 10000;  // of one family and population
   uint64_t seed = 1;
   std::optional<uint64_t> only = {};                 // the number of the one ray to judge
   double t_tolerance_a = 1;                          // in floats

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -10,19 +11,25 @@
 
 namespace alhazen::crosscheck {
 
-/// Owns a device and a scene.
+/// The device of all these scenes: making one takes as long as hundreds of rays.
+[[nodiscard]] inline RTCDevice shared_device() {
+  static const std::unique_ptr<RTCDeviceTy, decltype(&rtcReleaseDevice)> device(rtcNewDevice(nullptr),
+                                                                                rtcReleaseDevice);
+  return device.get();
+}
+
+/// Owns a scene.
 class EmbreeScene {
  public:
-  explicit EmbreeScene(bool robust) : device_(rtcNewDevice(nullptr)), scene_(new_scene(robust)) {}
+  explicit EmbreeScene(bool robust) : scene_(new_scene(robust)) {}
   ~EmbreeScene() {
     for (RTCScene s : inner_) rtcReleaseScene(s);
     rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
   }
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-  [[nodiscard]] RTCDevice device() const { return device_; }
+  [[nodiscard]] static RTCDevice device() { return shared_device(); }
 
   /// Commits, attaches and releases the geometry.
   void attach(RTCGeometry g) { attach_to(scene_, g); }
@@ -31,7 +38,7 @@ class EmbreeScene {
     inner_.push_back(new_scene(robust));
     attach_to(inner_.back(), g);
     rtcCommitScene(inner_.back());
-    RTCGeometry instance = embree::new_geometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
+    RTCGeometry instance = embree::new_geometry(device(), RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(instance, inner_.back());
     const float columns[12] = {m.x.x, m.x.y, m.x.z, m.y.x,      m.y.y,      m.y.z,
                                m.z.x, m.z.y, m.z.z, m.origin.x, m.origin.y, m.origin.z};
@@ -60,8 +67,8 @@ class EmbreeScene {
   }
 
  private:
-  [[nodiscard]] RTCScene new_scene(bool robust) const {
-    RTCScene scene = rtcNewScene(device_);
+  [[nodiscard]] static RTCScene new_scene(bool robust) {
+    RTCScene scene = rtcNewScene(device());
     rtcSetSceneFlags(scene, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     return scene;
   }
@@ -79,7 +86,6 @@ class EmbreeScene {
     p.hit.geomID[i] = p.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
 
-  RTCDevice device_;
   RTCScene scene_;
   std::vector<RTCScene> inner_;
 };

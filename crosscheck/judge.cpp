@@ -45,31 +45,53 @@ Vec3d unit_normal(const Surface& surface, const Vec3d& p, int face) {
   return size > 0 && is_finite(n) ? normalize(n / size) : Vec3d{};
 }
 
-Vec3d to_double(const Vec3<Ball>& v) { return {double(v.x.mid), double(v.y.mid), double(v.z.mid)}; }
-
 bool in_range(float t, const Rayf& ray) { return t >= ray.t_min && t <= ray.t_max; }
+
+/// The surface and its place in one of the interval arithmetics.
+template <class N>
+class BallInstance {
+ public:
+  explicit BallInstance(const Subject& subject) : surface_(subject.surface), map_({&subject.world_from_object, 1}) {}
+
+  [[nodiscard]] BallLine<N> object_line(const Rayf& ray) const {
+    return map_({Vec3<Ball<N>>(Vec3d(ray.origin)), Vec3<Ball<N>>(Vec3d(ray.direction))});
+  }
+  /// The first in range. Throws InDoubt.
+  [[nodiscard]] std::optional<BallCrossing<N>> closest(const BallLine<N>& line, const Rayf& ray, float& t) const {
+    thread_local std::vector<BallCrossing<N>> crossings;
+    crossings.clear();
+    surface_.append_crossings(line, crossings);
+    for (const BallCrossing<N>& c : crossings)
+      if (t = to_float(c.t); in_range(t, ray)) return c;
+    return {};
+  }
+
+ private:
+  BallSurface<N> surface_;
+  BallMap<N> map_;
+};
 
 }  // namespace
 
 struct Judge::Impl {
   Subject subject;
-  BallSurface surface;
-  BallMap map;
+  BallInstance<double> by_doubles;
+  BallInstance<DoubleDouble> by_double_doubles;
 
-  explicit Impl(const Subject& s) : subject(s), surface(subject.surface), map({&subject.world_from_object, 1}) {}
-
-  [[nodiscard]] BallLine object_line(const Rayf& ray) const {
-    return map({Vec3<Ball>(Vec3d(ray.origin)), Vec3<Ball>(Vec3d(ray.direction))});
-  }
+  explicit Impl(const Subject& s) : subject(s), by_doubles(subject), by_double_doubles(subject) {}
 
   /// What follows from where the hit is: the side, and the normal.
-  void describe(const BallLine& line, Quad t, Judgement& j) const {
-    const Vec3<Quad> p{line.origin.x.mid + t * line.direction.x.mid, line.origin.y.mid + t * line.direction.y.mid,
-                       line.origin.z.mid + t * line.direction.z.mid};
-    const Vec3d p_object{double(p.x), double(p.y), double(p.z)}, d = to_double(line.direction);
+  template <class N>
+  void describe(const BallLine<N>& line, N t, Judgement& j) const {
+    const auto at = [&](int k) { return double(line.origin[k].mid + t * line.direction[k].mid); };
+    const auto size = [](const Vec3<Ball<N>>& v) {
+      return max_component(abs(Vec3d{double(v.x.mid), double(v.y.mid), double(v.z.mid)}));
+    };
+    const Vec3d p_object{at(0), at(1), at(2)};
+    const Vec3d d{double(line.direction.x.mid), double(line.direction.y.mid), double(line.direction.z.mid)};
     j.normal_object = unit_normal(subject.surface, p_object, j.face);
-    const double d_size = max_component(abs(d)), across = dot(j.normal_object, d / d_size);
-    const double off = std::abs(double(t)) * d_size * 0x1p-22 + max_component(abs(to_double(line.origin))) * 1e-13;
+    const double d_size = size(line.direction), across = dot(j.normal_object, d / d_size);
+    const double off = std::abs(double(t)) * d_size * 0x1p-22 + size(line.origin) * 1e-13;
     j.normal_tolerance = 1e-9;
     for (const Vec3d& step : {Vec3d{off, 0, 0}, Vec3d{0, off, 0}, Vec3d{0, 0, off}}) {
       const Vec3d turned = unit_normal(subject.surface, p_object + step, j.face);
@@ -78,15 +100,14 @@ struct Judge::Impl {
     j.side = std::abs(across) > kGrazing + j.normal_tolerance ? (across < 0 ? -1 : 1) : 0;
   }
 
-  [[nodiscard]] Judgement by_balls(const Rayf& ray) const {
-    const BallLine line = object_line(ray);
+  template <class N>
+  [[nodiscard]] Judgement by_balls(const BallInstance<N>& instance, const Rayf& ray) const {
+    const BallLine<N> line = instance.object_line(ray);
     Judgement j;
-    for (const BallCrossing& c : surface.crossings(line)) {
-      const float t = to_float(c.t);
-      if (!in_range(t, ray)) continue;
-      j.hit = true, j.t = t, j.face = c.face;
-      describe(line, c.t.mid, j);
-      break;
+    float t;
+    if (const auto c = instance.closest(line, ray, t)) {
+      j.hit = true, j.t = t, j.face = c->face;
+      describe(line, c->t.mid, j);
     }
     return j;
   }
@@ -94,14 +115,14 @@ struct Judge::Impl {
   [[nodiscard]] Judgement by_rationals(const Rayf& ray) const {
     const ExactLine line = exact_line({&subject.world_from_object, 1}, exact_line(ray));
     Judgement j;
-    j.by_rationals = true;
+    j.by = JudgedBy::rationals;
     j.tie = tie_of(subject.surface, line);
     for (const ExactCrossing& c :
          std::visit([&](const auto& s) { return exact_crossings(s, line); }, subject.surface)) {
       const float t = alhazen::to_float(c.t);
       if (!in_range(t, ray)) continue;
       j.hit = true, j.t = t, j.face = c.face;
-      describe(object_line(ray), to_quad(c.t), j);
+      describe(by_double_doubles.object_line(ray), DoubleDouble(double(to_quad(c.t))), j);
       break;
     }
     return j;
@@ -113,7 +134,13 @@ Judge::~Judge() = default;
 
 Judgement Judge::closest(const Rayf& ray) const {
   try {
-    return impl_->by_balls(ray);
+    return impl_->by_balls(impl_->by_doubles, ray);
+  } catch (const InDoubt&) {
+  }
+  try {
+    Judgement j = impl_->by_balls(impl_->by_double_doubles, ray);
+    j.by = JudgedBy::double_doubles;
+    return j;
   } catch (const InDoubt&) {
     return impl_->by_rationals(ray);
   }

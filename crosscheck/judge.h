@@ -1,6 +1,6 @@
-// The judge: what a ray hits in truth. Interval arithmetic in binary128 first, rational numbers for what that leaves
-// open. It shares no arithmetic with the intersectors: it tells inside from outside between the crossings of all
-// surfaces, where they order the crossings.
+// The judge: what a ray hits in truth. Interval arithmetic in double first, in double-double for what that leaves open,
+// and rational numbers for the rest. It shares no arithmetic with the intersectors: it tells inside from outside
+// between the crossings of all surfaces, where they order the crossings.
 #pragma once
 
 #include <memory>
@@ -10,6 +10,8 @@
 
 namespace alhazen::crosscheck {
 
+enum class JudgedBy : uint8_t { doubles, double_doubles, rationals };  // intervals around the first two
+
 struct Judgement {
   bool hit = false;
   float t = 0;  // correctly rounded
@@ -18,7 +20,7 @@ struct Judgement {
   Vec3d normal_object;          // unit, or zero where there is none
   double normal_tolerance = 0;  // by how much, in radians, an error of one unit in the last place of t may turn it
   Tie tie = Tie::none;
-  bool by_rationals = false;
+  JudgedBy by = JudgedBy::doubles;
 };
 
 class Judge {

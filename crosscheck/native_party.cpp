@@ -155,9 +155,7 @@ std::unique_ptr<Party> native_party(const Subject& subject, bool robust) {
 }
 
 std::string embree_version() {
-  RTCDevice device = rtcNewDevice(nullptr);
-  const int width = embree::packet_width(device);
-  rtcReleaseDevice(device);
+  const int width = embree::packet_width(shared_device());
   return std::string(RTC_VERSION_STRING) + ", " + std::to_string(width) + " lanes";
 }
 

@@ -52,6 +52,14 @@ Rayf RayMaker::uniform_ray(Random& random) const {
   return through(origin, in_box(1, random), random);
 }
 
+/// Of a flat subject mostly beside its plane: lines within the plane are ties.
+Vec3d RayMaker::near_box(double scale, Random& random) const {
+  const Vec3d p = in_box(scale, random), size = box_.upper - box_.lower;
+  const double off = max_component(size) * random.decades(-6, 0) * random.uniform();
+  if (random.integer(0, 15) == 0) return p;
+  return p + Vec3d{size.x == 0 ? off : 0, size.y == 0 ? off : 0, size.z == 0 ? off : 0};
+}
+
 Vec3d RayMaker::on_surface(Random& random) const {
   for (int tries = 0; tries < 4; ++tries) {
     const Rayf ray = uniform_ray(random);
@@ -64,10 +72,12 @@ Vec3d RayMaker::on_surface(Random& random) const {
 }
 
 Rayf RayMaker::silhouette_ray(Random& random) const {
-  const Vec3d p = on_surface(random);
-  const auto* composite = std::get_if<Composite>(&subject_->surface);
-  const Vec3d n = composite ? normalize(p - center())
-                            : std::visit([&](const auto& s) { return normal(s, p, kWallFace); }, subject_->surface);
+  const Surface& surface = subject_->surface;
+  const bool is_box = std::holds_alternative<Box>(surface),
+             has_edges = is_box || std::holds_alternative<Composite>(surface);
+  const Vec3d p = is_box ? feature_point(surface, random) : on_surface(random);
+  const Vec3d n =
+      has_edges ? normalize(p - center()) : std::visit([&](const auto& s) { return normal(s, p, kWallFace); }, surface);
   const Vec3d along = normalize(cross(n, random.on_sphere()));
   const double size = max_component(box_.upper - box_.lower);
   const double off = size * std::exp2(-random.integer(0, 30)) * (random.coin() ? 1 : -1);
@@ -99,7 +109,7 @@ Rayf RayMaker::axis_ray(Random& random) const {
 }
 
 Rayf RayMaker::clipped_ray(Random& random) const {
-  Rayf ray = random.coin() ? uniform_ray(random) : through(in_box(1, random), in_box(1, random), random);
+  Rayf ray = random.coin() ? uniform_ray(random) : through(near_box(1, random), in_box(1, random), random);
   const float t = moved_by_floats(hit_or_some(*judge_, ray, random), random.integer(-4, 4));
   if (random.coin())
     ray.t_min = t;
@@ -140,7 +150,7 @@ Rayf RayMaker::ray(Population population, Random& random) const {
       return ray;
     }
     case Population::inside: {
-      const Vec3d origin = in_box(0.7, random);
+      const Vec3d origin = near_box(0.7, random);
       return through(origin, in_box(1, random), random);
     }
     case Population::special: {

@@ -36,6 +36,7 @@ class RayMaker {
  private:
   [[nodiscard]] Vec3d center() const { return (box_.lower + box_.upper) * 0.5; }
   [[nodiscard]] Vec3d in_box(double scale, Random& random) const;
+  [[nodiscard]] Vec3d near_box(double scale, Random& random) const;
   [[nodiscard]] Vec3d on_surface(Random& random) const;  // nearly
   [[nodiscard]] Vec3d outer_origin(Random& random) const;
   [[nodiscard]] Rayf through(const Vec3d& origin_object, const Vec3d& target_object, Random& random) const;

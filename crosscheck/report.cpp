@@ -37,12 +37,13 @@ Json answer_json(const Answer& answer, const Judgement& truth, Fault fault) {
 Json truth_json(const Judgement& truth) {
   constexpr const char* kSides[] = {"inside", "grazing", "outside"};
   constexpr const char* kTies[] = {"none", "edge", "tangent", "coplanar"};
+  constexpr const char* kBy[] = {"double intervals", "double-double intervals", "rationals"};
   Json json{{"hit", truth.hit}};
   if (truth.hit) {
     json["t"] = hex(truth.t), json["face"] = truth.face, json["side"] = kSides[1 - truth.side];
     json["normal"] = hex(truth.normal_object);
   }
-  json["tie"] = kTies[size_t(truth.tie)], json["by"] = truth.by_rationals ? "rationals" : "intervals";
+  json["tie"] = kTies[size_t(truth.tie)], json["by"] = kBy[size_t(truth.by)];
   return json;
 }
 

@@ -26,27 +26,56 @@ std::vector<Case> cases_of(const std::string& family, Population population, con
   return cases;
 }
 
-TEST(Ball, HoldsTheExactResultOfRandomExpressions) {
+Rational exact_value(double x) { return exact(x); }
+Rational exact_value(const DoubleDouble& x) { return exact(x.hi) + exact(x.lo); }
+
+template <class N>
+class BallOf : public testing::Test {};
+using Midpoints = testing::Types<double, DoubleDouble>;
+TYPED_TEST_SUITE(BallOf, Midpoints);
+
+TYPED_TEST(BallOf, HoldsTheExactResultOfRandomExpressions) {
+  using B = Ball<TypeParam>;
   Random random{1};
-  for (int k = 0; k < 2000; ++k) {
+  for (int k = 0; k < 4000; ++k) {
     const double a = random.uniform() * random.decades(-9, 9), b = random.uniform(), c = random.uniform(1, 2);
-    const Ball ball = (Ball(a) * Ball(b) - Ball(c)) / Ball(c) + Ball(a);
+    const B ball = (B(a) * B(b) - B(c)) / B(c) + B(a);
     const Rational truth = (exact(a) * exact(b) - exact(c)) / exact(c) + exact(a);
-    const auto high = double(ball.mid), middle = double(ball.mid - Quad(high));
-    const auto low = double(ball.mid - Quad(high) - Quad(middle));
-    const Rational off = truth - exact(high) - exact(middle) - exact(low);
-    EXPECT_LE(abs(off), exact(ball.rad));
-    EXPECT_LT(ball.rad, 1e-30 * (std::abs(a) + 1));
+    EXPECT_LE(abs(Rational(truth - exact_value(ball.mid))), exact(ball.rad));
+    EXPECT_LT(ball.rad, 64 * kUnitRoundoff<TypeParam> * (std::abs(a) + 1));
+    const B root = square_root(B(std::abs(a)));
+    const Rational lower = exact_value(root.mid) - exact(root.rad), upper = exact_value(root.mid) + exact(root.rad);
+    EXPECT_TRUE(lower * lower <= exact(std::abs(a)) && exact(std::abs(a)) <= upper * upper);
   }
 }
 
-TEST(Ball, RefusesToSayWhatItDoesNotKnow) {
-  EXPECT_EQ(sign(Ball(0.0)), 0);
-  EXPECT_EQ(sign(Ball(1.0) - Ball(1.0)), 0);
-  const Ball third = Ball(1.0) / Ball(3.0);
-  EXPECT_THROW((void)sign(third * Ball(3.0) - Ball(1.0)), InDoubt);
-  EXPECT_THROW((void)(Ball(1.0) / Ball(0.0)), InDoubt);
-  EXPECT_THROW((void)sign(Ball(std::nan(""))), InDoubt);
+TYPED_TEST(BallOf, HoldsTheRationalItIsMadeOf) {
+  Random random{2};
+  for (int k = 0; k < 2000; ++k) {
+    const Rational x = exact(random.uniform()) / exact(random.decades(-9, 9));
+    const Ball<TypeParam> ball(x);
+    EXPECT_LE(abs(Rational(x - exact_value(ball.mid))), exact(ball.rad));
+  }
+}
+
+TYPED_TEST(BallOf, RefusesToSayWhatItDoesNotKnow) {
+  using B = Ball<TypeParam>;
+  EXPECT_EQ(sign(B(0.0)), 0);
+  EXPECT_EQ(sign(B(1.0) - B(1.0)), 0);
+  const B third = B(1.0) / B(3.0);
+  EXPECT_THROW((void)sign(third * B(3.0) - B(1.0)), InDoubt);
+  EXPECT_THROW((void)(B(1.0) / B(0.0)), InDoubt);
+  EXPECT_THROW((void)sign(B(std::nan(""))), InDoubt);
+  EXPECT_THROW((void)sign(B(1e300) * B(1e300)), InDoubt);
+  EXPECT_THROW((void)to_float(B(1 + 0x1p-24) * third * B(3.0)), InDoubt);
+}
+
+TEST(DoubleDouble, RoundsToFloatOnce) {
+  const double tie = 1 + 0x1p-24;  // between two floats
+  EXPECT_EQ(float(DoubleDouble(tie, 0x1p-80)), 1 + 0x1p-23f);
+  EXPECT_EQ(float(DoubleDouble(tie, -0x1p-80)), 1.0f);
+  EXPECT_EQ(float(DoubleDouble(tie)), 1.0f);
+  EXPECT_EQ(float(DoubleDouble(-tie, -0x1p-80)), -1 - 0x1p-23f);
 }
 
 TEST(Crosscheck, TheJudgesTwoInstancesAgreeOnEveryKindOfRay) {
