@@ -68,11 +68,13 @@ Json bounds_json(const Geometry& geometry) {
 }
 
 Json extensions_json(const LoadedScene& loaded) {
+  constexpr std::array treatments{"supported", "approximated", "ignored"};
   Json extensions = Json::array();
   for (const Extension& extension : loaded.extensions)
     extensions.push_back({{"name", extension.name},
                           {"required", extension.required},
-                          {"treatment", extension.read ? "read" : "ignored"}});
+                          {"treatment", treatments[size_t(extension.treatment)]},
+                          {"meaning", extension.meaning}});
   return extensions;
 }
 
@@ -119,8 +121,9 @@ std::string light_text(const Json& light) {
 }
 
 std::string extension_text(const Json& extension) {
-  return extension["name"].get<std::string>() + ", " + extension["treatment"].get<std::string>() +
-         (extension["required"].get<bool>() ? ", required" : "");
+  const std::string meaning = extension["meaning"];
+  return extension["name"].get<std::string>() + (extension["required"].get<bool>() ? ", required, " : ", ") +
+         extension["treatment"].get<std::string>() + (meaning.empty() ? "" : ": " + meaning);
 }
 
 std::string row(const std::string& title, const std::string& text) {

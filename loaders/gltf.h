@@ -16,17 +16,20 @@ struct EncodedImage {
   std::vector<uint8_t> bytes;  // empty: could not be read, a warning was given
 };
 
+enum class Treatment : uint8_t { supported, approximated, ignored };
+
 /// An extension that the file names, and what became of it.
 struct Extension {
   std::string name;
   bool required = false;
-  bool read = false;  // otherwise ignored
+  Treatment treatment = Treatment::ignored;
+  std::string meaning;  // of the treatment; may be empty
 };
 
 struct LoadedScene {
   Scene scene;  // images still empty (width 0), as many as `encoded`
   std::vector<EncodedImage> encoded;
-  std::vector<Extension> extensions;  // of `extensionsUsed`
+  std::vector<Extension> extensions;  // of `extensionsUsed` and `extensionsRequired`
 };
 
 using WarningSink = std::function<void(const std::string&)>;

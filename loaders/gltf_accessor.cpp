@@ -3,37 +3,13 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <set>
 #include <type_traits>
-
-#include "loaders/gltf_uri.h"
 
 namespace alhazen {
 namespace {
 
 constexpr uint64_t kMaxZeros = uint64_t{1} << 24;  // elements of an accessor that no bytes stand behind
-
-/// Calls `f` with a value of the component type.
-template <class F>
-auto with_component_type(int type, F&& f) {
-  switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return f(int8_t{});
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return f(uint8_t{});
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return f(int16_t{});
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return f(uint16_t{});
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-      return f(uint32_t{});
-    default:
-      return f(float{});
-  }
-}
-
-size_t component_size(int type) {
-  return with_component_type(type, [](auto c) { return sizeof c; });
-}
 
 /// Where the components of an element lie. Columns of matrices begin at multiples of 4 bytes.
 struct ElementLayout {
@@ -53,7 +29,7 @@ size_t rows_of(int type, size_t components) {
 
 template <class T>
 float to_float(T value, bool normalized) {
-  if constexpr (std::is_floating_point_v<T>) return value;
+  if constexpr (std::is_floating_point_v<T>) return float(value);
   if (!normalized) return float(value);
   return float(std::max(double(value) / double(std::numeric_limits<T>::max()), -1.0));
 }
@@ -90,51 +66,40 @@ const uint8_t* elements_in(const JsonRef& r, std::span<const uint8_t> view, uint
   return view.data() + offset;
 }
 
-Bytes read_external(const JsonRef& uri, const GltfDocument& document) {
-  auto bytes = resolve_uri(uri, document.folder);
-  if (!bytes) uri.fail("cannot read `" + uri.as<std::string>().substr(0, 80) + "`");
-  return std::move(*bytes);
-}
-
-std::span<const uint8_t> cut_to_length(const JsonRef& r, std::span<const uint8_t> all) {
-  const auto length = r["byteLength"].as<uint64_t>();
-  if (all.size() < length)
-    r["byteLength"].fail("expected " + bytes_text(length) + ", the buffer has " + bytes_text(all.size()));
-  return all.first(length);
-}
-
-std::span<const uint8_t> cut_view(const JsonRef& r, std::span<const uint8_t> buffer, const tinygltf::BufferView& v) {
-  if (v.byteOffset > buffer.size() || v.byteLength > buffer.size() - v.byteOffset)
-    r.fail(bytes_text(v.byteLength) + " from byte " + std::to_string(v.byteOffset) + " on exceed the buffer's " +
-           bytes_text(buffer.size()));
-  return buffer.subspan(v.byteOffset, v.byteLength);
+/// The accessors whose numbers a Draco stream holds instead of a buffer view.
+std::set<int> draco_accessors(const GltfSource& source) {
+  std::set<int> all;
+  for (const JsonRef& mesh : source.root().elements("meshes"))
+    for (const JsonRef& primitive : mesh.elements("primitives")) {
+      const auto draco = primitive.extension("KHR_draco_mesh_compression");
+      if (!draco) continue;
+      if (const auto index = primitive.find("indices")) all.insert(index->as<int>());
+      for (const auto& item : (*draco)["attributes"].value().items())
+        if (const auto at = primitive["attributes"].find(item.key())) all.insert(at->as<int>());
+    }
+  return all;
 }
 
 }  // namespace
+
+size_t component_size(int type) {
+  return with_component_type(type, [](auto c) { return sizeof c; });
+}
 
 bool AccessorView::is_unsigned_integer() const {
   return type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
          type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 }
 
-GltfBuffers::GltfBuffers(const GltfSource& source) {
-  const auto buffers = source.root().elements("buffers");
-  owned_.resize(buffers.size());
-  for (size_t i = 0; i < buffers.size(); ++i) {
-    const JsonRef& r = buffers[i];
-    const bool in_glb = i == 0 && !r.has("uri") && source.document.bin;
-    if (!r.has("uri") && !in_glb) r.fail("`uri` is missing, and the file has no GLB chunk for this buffer");
-    if (!in_glb) owned_[i] = read_external(r["uri"], source.document);
-    buffers_.push_back(cut_to_length(r, in_glb ? *source.document.bin : std::span<const uint8_t>(owned_[i])));
-    bytes_ += buffers_.back().size();
-  }
+GltfBuffers::GltfBuffers(const GltfSource& source) : views_(source) {
   const tinygltf::Model& model = source.model;
-  for (size_t i = 0; i < size_t(zeros_view(model)); ++i) {
-    const tinygltf::BufferView& view = model.bufferViews[i];
-    views_.push_back(cut_view(source.at("bufferViews", i), buffers_[size_t(view.buffer)], view));
+  const std::set<int> elsewhere = draco_accessors(source);
+  for (size_t i = 0; i < model.accessors.size(); ++i) {
+    const JsonRef r = source.at("accessors", i);
+    accessors_.push_back(check_accessor(r, model, model.accessors[i]));
+    if (!accessors_.back().data && accessors_.back().count > kMaxZeros && !elsewhere.contains(int(i)))
+      r["count"].expected("at most " + std::to_string(kMaxZeros) + " without a bufferView");
   }
-  for (size_t i = 0; i < model.accessors.size(); ++i)
-    accessors_.push_back(check_accessor(source.at("accessors", i), model, model.accessors[i]));
 }
 
 AccessorView GltfBuffers::check_accessor(const JsonRef& r, const tinygltf::Model& model,
@@ -147,14 +112,12 @@ AccessorView GltfBuffers::check_accessor(const JsonRef& r, const tinygltf::Model
   view.normalized = a.normalized;
   const ElementLayout layout = layout_of(view);
   view.stride = layout.padded();
-  if (a.bufferView == zeros_view(model)) {
-    if (a.count > kMaxZeros) r["count"].expected("at most " + std::to_string(kMaxZeros) + " without a bufferView");
-  } else {
+  if (a.bufferView != zeros_view(model)) {
     if (const size_t stride = model.bufferViews[size_t(a.bufferView)].byteStride) view.stride = stride;
     if (view.stride < layout.used())
       r.fail("elements of " + bytes_text(layout.used()) + " overlap, the buffer view's byteStride is " +
              std::to_string(view.stride));
-    view.data = elements_in(r, buffer_view(a.bufferView), a.byteOffset, a.count, view.stride, layout.used());
+    view.data = elements_in(r, views_[a.bufferView], a.byteOffset, a.count, view.stride, layout.used());
   }
   if (a.sparse.isSparse) check_sparse(r["sparse"], a, view);
   return view;
@@ -168,13 +131,13 @@ void GltfBuffers::check_sparse(const JsonRef& r, const tinygltf::Accessor& a, Ac
   replaced.components = replaced.rows = 1;
   replaced.type = a.sparse.indices.componentType;
   replaced.stride = component_size(replaced.type);
-  replaced.data = elements_in(r["indices"], buffer_view(a.sparse.indices.bufferView),
-                              uint64_t(a.sparse.indices.byteOffset), count, replaced.stride, replaced.stride);
+  replaced.data = elements_in(r["indices"], views_[a.sparse.indices.bufferView], uint64_t(a.sparse.indices.byteOffset),
+                              count, replaced.stride, replaced.stride);
   view.replaced = indices(replaced);
   const ElementLayout layout = layout_of(view);
   view.replacement_stride = layout.padded();
-  view.replacements = elements_in(r["values"], buffer_view(a.sparse.values.bufferView),
-                                  uint64_t(a.sparse.values.byteOffset), count, layout.padded(), layout.used());
+  view.replacements = elements_in(r["values"], views_[a.sparse.values.bufferView], uint64_t(a.sparse.values.byteOffset),
+                                  count, layout.padded(), layout.used());
   for (size_t i = 0; i < view.replaced.size(); ++i) {
     if (view.replaced[i] >= a.count)
       r["indices"].fail("index " + std::to_string(view.replaced[i]) + " out of range, the accessor has " +

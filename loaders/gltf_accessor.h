@@ -5,11 +5,34 @@
 #include <span>
 #include <vector>
 
-#include "loaders/gltf_source.h"
+#include "loaders/gltf_buffer_views.h"
 
 namespace alhazen {
 
-/// Any accessor, every byte of which was checked to lie in its buffer.
+/// Calls `f` with a value of the component type TINYGLTF_COMPONENT_TYPE_...
+template <class F>
+auto with_component_type(int type, F&& f) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return f(int8_t{});
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return f(uint8_t{});
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return f(int16_t{});
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return f(uint16_t{});
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return f(uint32_t{});
+    case TINYGLTF_COMPONENT_TYPE_DOUBLE:
+      return f(double{});
+    default:
+      return f(float{});
+  }
+}
+
+[[nodiscard]] size_t component_size(int type);  // bytes
+
+/// Any accessor, every byte of which was checked to lie in what holds it.
 struct AccessorView {
   uint64_t count = 0;     // elements
   size_t components = 0;  // 1 to 16, matrices column by column
@@ -32,18 +55,16 @@ class GltfBuffers {
   explicit GltfBuffers(const GltfSource& source);
 
   [[nodiscard]] const AccessorView& accessor(int i) const { return accessors_[size_t(i)]; }
-  [[nodiscard]] std::span<const uint8_t> buffer_view(int i) const { return views_[size_t(i)]; }
-  [[nodiscard]] uint64_t bytes() const { return bytes_; }  // of all buffers
+  [[nodiscard]] std::span<const uint8_t> buffer_view(int i) const { return views_[i]; }
+  [[nodiscard]] uint64_t bytes() const { return views_.bytes(); }
 
  private:
   [[nodiscard]] AccessorView check_accessor(const JsonRef& r, const tinygltf::Model& model,
                                             const tinygltf::Accessor& a) const;
   void check_sparse(const JsonRef& r, const tinygltf::Accessor& a, AccessorView& view) const;
 
-  std::vector<Bytes> owned_;
-  std::vector<std::span<const uint8_t>> buffers_, views_;
+  GltfBufferViews views_;
   std::vector<AccessorView> accessors_;
-  uint64_t bytes_ = 0;
 };
 
 /// The components of the given elements, one element after the other; integers normalised where the accessor says so.

@@ -22,14 +22,45 @@ void check_version(const JsonRef& r) {
 
 Check buffer() { return object({{"byteLength", integer(0, kMaxOffset), required}, {"uri", text()}}); }
 
-Check buffer_view() {
-  const Check stride = both(integer(0, 252), [](const JsonRef& r) {
+Check multiple_of_4(uint64_t low, uint64_t high) {
+  return both(integer(low, high), [](const JsonRef& r) {
     if (r.as<uint64_t>() % 4) r.expected("a multiple of 4");
   });
-  return object({{"buffer", index_into("/buffers"), required},
-                 {"byteOffset", integer(0, kMaxOffset)},
-                 {"byteLength", integer(0, kMaxOffset), required},
-                 {"byteStride", stride}});
+}
+
+/// What the mode and the filter ask of stride and count.
+void check_meshopt_layout(const JsonRef& r) {
+  const auto mode = r["mode"].as<std::string>(), filter = r.get("filter", std::string("NONE"));
+  const bool attributes = mode == "ATTRIBUTES";
+  const auto stride_is = [&](std::vector<uint64_t> strides) { one_of(std::move(strides))(r["byteStride"]); };
+  if (attributes) multiple_of_4(4, 256)(r["byteStride"]);
+  if (!attributes) stride_is({2, 4});
+  if (!attributes && filter != "NONE") r["filter"].expected("NONE, as mode " + mode + " has it");
+  if (mode == "TRIANGLES" && r["count"].as<uint64_t>() % 3) r["count"].expected("a multiple of 3");
+  if (filter == "OCTAHEDRAL" || filter == "COLOR") stride_is({4, 8});
+  if (filter == "QUATERNION") stride_is({8});
+}
+
+Check meshopt(std::vector<std::string> filters) {
+  return both(object({{"buffer", index_into("/buffers"), required},
+                      {"byteOffset", integer(0, kMaxOffset)},
+                      {"byteLength", integer(0, kMaxOffset), required},
+                      {"byteStride", integer(1, 256), required},
+                      {"count", integer(1, kNone - 1), required},
+                      {"mode", one_of(std::vector<std::string>{"ATTRIBUTES", "TRIANGLES", "INDICES"}), required},
+                      {"filter", one_of(std::move(filters))}}),
+              check_meshopt_layout);
+}
+
+Check buffer_view() {
+  return object(
+      {{"buffer", index_into("/buffers"), required},
+       {"byteOffset", integer(0, kMaxOffset)},
+       {"byteLength", integer(0, kMaxOffset), required},
+       {"byteStride", multiple_of_4(0, 252)},
+       {"extensions",
+        object({{"EXT_meshopt_compression", meshopt({"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"})},
+                {"KHR_meshopt_compression", meshopt({"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL", "COLOR"})}})}});
 }
 
 Check accessor() {
@@ -42,7 +73,7 @@ Check accessor() {
   return object(
       {{"bufferView", index_into("/bufferViews")},
        {"byteOffset", integer(0, kMaxOffset)},
-       {"componentType", one_of(std::vector<uint64_t>{5120, 5121, 5122, 5123, 5125, 5126}), required},
+       {"componentType", one_of(std::vector<uint64_t>{5120, 5121, 5122, 5123, 5125, 5126, 5130}), required},
        {"normalized", boolean()},
        {"count", integer(1, kNone - 1), required},
        {"type", one_of(std::vector<std::string>{"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"}), required},
@@ -125,13 +156,16 @@ Check material() {
 // ---- Meshes, cameras, lights, nodes ----
 
 Check mesh() {
+  const Check draco = object(
+      {{"bufferView", index_into("/bufferViews"), required}, {"attributes", map_of(integer(0, kNone - 1)), required}});
   const Check attributes = map_of(index_into("/accessors"));
-  const Check primitive = object({{"attributes", attributes, required},
-                                  {"indices", index_into("/accessors")},
-                                  {"material", index_into("/materials")},
-                                  {"mode", integer(0, 6)},
-                                  {"targets", list_of(attributes)},
-                                  {"extensions", object({{"FB_ngon_encoding", object({})}})}});
+  const Check primitive =
+      object({{"attributes", attributes, required},
+              {"indices", index_into("/accessors")},
+              {"material", index_into("/materials")},
+              {"mode", integer(0, 6)},
+              {"targets", list_of(attributes)},
+              {"extensions", object({{"FB_ngon_encoding", object({})}, {"KHR_draco_mesh_compression", draco}})}});
   return object({{"name", text()}, {"primitives", list_of(primitive), required}, {"weights", list_of(number())}});
 }
 

@@ -1,11 +1,10 @@
 #include "loaders/gltf_source.h"
 
 #include <algorithm>
-#include <array>
 #include <exception>
-#include <string_view>
 
 #include "core/error.h"
+#include "loaders/gltf_extensions.h"
 #include "loaders/gltf_schema.h"
 
 namespace alhazen {
@@ -13,39 +12,29 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 11> kSupported{"KHR_lights_punctual",
-                                                      "KHR_texture_transform",
-                                                      "KHR_materials_unlit",
-                                                      "KHR_materials_emissive_strength",
-                                                      "KHR_materials_ior",
-                                                      "KHR_materials_specular",
-                                                      "KHR_materials_transmission",
-                                                      "ALHAZEN_materials_phong",
-                                                      "ALHAZEN_lights",
-                                                      "ALHAZEN_shapes",
-                                                      "FB_ngon_encoding"};
-
-bool is_supported(const std::string& name) {
-  return std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
-}
-
-/// What `extensionsUsed` names.
+/// What the file names, each once. Whatever it requires, there is a picture: what is not known is left out of it.
 std::vector<Extension> read_extensions(const JsonRef& root, Warnings& warn) {
-  std::set<std::string> all_required;
-  for (const JsonRef& r : root.elements("extensionsRequired")) {
-    const auto name = r.as<std::string>();
-    if (!is_supported(name)) r.fail("requires the extension " + name + ", which is not supported");
-    all_required.insert(name);
-  }
-  std::vector<Extension> used;
-  std::string ignored;
+  std::vector<Extension> all;
+  const auto add = [&](const std::string& name, bool required) {
+    const auto known = std::find_if(all.begin(), all.end(), [&](const Extension& e) { return e.name == name; });
+    if (known == all.end()) all.push_back(treat_extension(name, required));
+  };
+  std::vector<JsonRef> required = root.elements("extensionsRequired");
   for (const JsonRef& r : root.elements("extensionsUsed")) {
-    const auto name = r.as<std::string>();
-    used.push_back({name, all_required.contains(name), is_supported(name)});
-    if (!is_supported(name)) ignored += (ignored.empty() ? "" : ", ") + name;
+    const auto same = [&](const JsonRef& other) { return other.value() == r.value(); };
+    add(r.as<std::string>(), std::any_of(required.begin(), required.end(), same));
+  }
+  for (const JsonRef& r : required) add(r.as<std::string>(), true);
+  std::string ignored;
+  for (const Extension& e : all) {
+    if (e.treatment != Treatment::ignored) continue;
+    if (e.required)
+      warn("/extensionsRequired", "requires " + e.name + ", which is ignored: " + e.meaning);
+    else
+      ignored += (ignored.empty() ? "" : ", ") + e.name;
   }
   if (!ignored.empty()) warn("/extensionsUsed", "ignored: " + ignored);
-  return used;
+  return all;
 }
 
 /// Takes away what tinygltf would copy without need.

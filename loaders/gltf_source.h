@@ -30,7 +30,7 @@ class Warnings {
 struct GltfSource {
   GltfDocument document;
   tinygltf::Model model;  // as many elements of each kind as the JSON has; buffers and images are placeholders
-  std::vector<Extension> extensions;  // of `extensionsUsed`
+  std::vector<Extension> extensions;  // of `extensionsUsed` and `extensionsRequired`
   Warnings warn;
 
   [[nodiscard]] JsonRef root() const { return JsonRef(document.json); }
@@ -39,7 +39,7 @@ struct GltfSource {
 };
 
 /// Reads and checks the file, all but the bytes of buffers and images. Throws LoadError for whatever `check_gltf`
-/// finds, and for a required extension that is not supported; one that is merely used gives a warning.
+/// finds. Extensions that are ignored give a warning.
 [[nodiscard]] GltfSource read_gltf_source(const std::filesystem::path& path, const WarningSink& warn);
 
 /// Accessors that have no bufferView get this one in the model: all zeros.

@@ -85,14 +85,15 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(len(info["lights"]), len(gltf["extensions"]["KHR_lights_punctual"]["lights"]))
         self.assertEqual([c["name"] for c in info["cameras"]], [c["name"] for c in gltf["cameras"]])
         self.assertEqual({e["name"]: e["treatment"] for e in info["extensions"]},
-                         {name: "read" for name in gltf["extensionsUsed"]})
+                         {name: "supported" for name in gltf["extensionsUsed"]})
         self.assertEqual(len(info["bounds"]["min"]), 3)
 
     def test_info_says_which_extensions_are_ignored(self):
         with open(self.file("x.gltf"), "w", encoding="utf-8") as file:
             json.dump({"asset": {"version": "2.0"}, "extensionsUsed": ["X_unheard"]}, file)
         info = json.loads(run("info", self.file("x.gltf"), "--json").stdout)
-        self.assertEqual(info["extensions"], [{"name": "X_unheard", "required": False, "treatment": "ignored"}])
+        self.assertEqual(info["extensions"], [{"name": "X_unheard", "required": False, "treatment": "ignored",
+                                               "meaning": "not known, what it brings is left out"}])
         self.assertEqual((info["nodes"], info["bounds"], info["cameras"]), (0, None, []))
 
     def test_misspelled_words_bring_the_nearest(self):

@@ -238,8 +238,6 @@ TEST(GltfErrors, NameThePlaceWhatWasFoundAndWhatWasExpected) {
       {"/scenes/0/extensions/ALHAZEN_lights/ambiant",
        {0, 0, 0},
        "/scenes/0/extensions/ALHAZEN_lights/ambiant: unknown key, expected one of ambient, background"},
-      {"/extensionsRequired/1", "KHR_draco_mesh_compression",
-       "/extensionsRequired/1: requires the extension KHR_draco_mesh_compression, which is not supported"},
       {"/extensionsUsed", "KHR_x", "/extensionsUsed: expected an array, found \"KHR_x\""},
   };
   for (const Fault& fault : faults) {
@@ -284,10 +282,19 @@ TEST(GltfErrors, AnExtensionThatIsMerelyUsedGivesOneWarning) {
   const Loaded loaded = load_json(document);
   ASSERT_EQ(loaded.warnings.size(), 1u);
   EXPECT_TRUE(loaded.warnings[0].ends_with("/extensionsUsed: ignored: KHR_a, KHR_b"));
-  ASSERT_EQ(loaded.loaded.extensions.size(), 3u);
+  ASSERT_EQ(loaded.loaded.extensions.size(), 4u);  // with the one that is only required
   EXPECT_EQ(loaded.loaded.extensions[0].name, "KHR_a");
-  EXPECT_FALSE(loaded.loaded.extensions[0].read);
-  EXPECT_TRUE(loaded.loaded.extensions[1].read);
+  EXPECT_EQ(loaded.loaded.extensions[0].treatment, Treatment::ignored);
+  EXPECT_EQ(loaded.loaded.extensions[1].treatment, Treatment::supported);
+}
+
+TEST(GltfErrors, AnExtensionThatIsRequiredButNotKnownGivesAWarningAndAPicture) {
+  json document = everything();
+  document["extensionsRequired"].push_back("ACME_unheard");
+  const Loaded loaded = load_json(document);
+  ASSERT_EQ(loaded.warnings.size(), 1u);
+  EXPECT_TRUE(loaded.warnings[0].ends_with(
+      "/extensionsRequired: requires ACME_unheard, which is ignored: not known, what it brings is left out"));
 }
 
 /// The pointers of all values in a document, those of objects and arrays too.

@@ -1,0 +1,68 @@
+#include "loaders/gltf_extensions.h"
+
+#include <algorithm>
+
+namespace alhazen {
+namespace {
+
+using enum Treatment;
+
+constexpr KnownExtension kKnown[] = {
+    {"ALHAZEN_lights", supported, ""},
+    {"ALHAZEN_materials_phong", supported, ""},
+    {"ALHAZEN_shapes", supported, ""},
+    {"EXT_lights_image_based", ignored, "no light comes from images"},
+    {"EXT_mesh_gpu_instancing", ignored, "one instance is seen"},
+    {"EXT_mesh_manifold", ignored, "nothing to see"},
+    {"EXT_meshopt_compression", supported, "all modes and filters"},
+    {"EXT_texture_webp", ignored, "the fallback image is seen"},
+    {"FB_ngon_encoding", supported, "polygon meshes"},
+    {"KHR_accessor_float64", approximated, "numbers are rounded to 32 bits"},
+    {"KHR_animation_pointer", ignored, "the rest pose is seen"},
+    {"KHR_audio_graph", ignored, "nothing to see"},
+    {"KHR_collision_shapes", ignored, "colliders are not seen"},
+    {"KHR_draco_mesh_compression", supported, ""},
+    {"KHR_gaussian_splatting", ignored, "splats are left out"},
+    {"KHR_implicit_shapes", ignored, "colliders are not seen"},
+    {"KHR_interactivity", ignored, "nothing to see"},
+    {"KHR_lights_punctual", supported, "range and spot cones too"},
+    {"KHR_materials_anisotropy", ignored, "highlights are round"},
+    {"KHR_materials_clearcoat", ignored, "the coat is left out"},
+    {"KHR_materials_diffuse_transmission", ignored, "no light is scattered through"},
+    {"KHR_materials_dispersion", ignored, "all colours refract alike"},
+    {"KHR_materials_emissive_strength", supported, ""},
+    {"KHR_materials_ior", supported, "0 too"},
+    {"KHR_materials_iridescence", ignored, "the thin film is left out"},
+    {"KHR_materials_pbrSpecularGlossiness", ignored, "the core material is seen"},
+    {"KHR_materials_sheen", ignored, "the fibres are left out"},
+    {"KHR_materials_specular", supported, ""},
+    {"KHR_materials_transmission", approximated, "thin-walled and clear whatever the roughness"},
+    {"KHR_materials_unlit", supported, ""},
+    {"KHR_materials_variants", ignored, "the default materials are seen"},
+    {"KHR_materials_volume", ignored, "bodies are thin-walled and clear"},
+    {"KHR_materials_volume_scatter", ignored, "bodies are thin-walled and clear"},
+    {"KHR_mesh_quantization", supported, ""},
+    {"KHR_meshopt_compression", supported, "all modes and filters; version 0 of the vertex codec"},
+    {"KHR_node_hoverability", ignored, "nothing to see"},
+    {"KHR_node_selectability", ignored, "nothing to see"},
+    {"KHR_node_visibility", ignored, "every node is seen"},
+    {"KHR_physics_rigid_bodies", ignored, "nothing moves"},
+    {"KHR_texture_basisu", ignored, "the fallback image is seen, else the material's factor"},
+    {"KHR_texture_transform", supported, "on every texture, texCoord too"},
+    {"KHR_xmp", ignored, "nothing to see"},
+    {"KHR_xmp_json_ld", ignored, "nothing to see"},
+    {"MSFT_lod", ignored, "all levels are seen"},
+};
+
+}  // namespace
+
+std::span<const KnownExtension> known_extensions() { return kKnown; }
+
+Extension treat_extension(const std::string& name, bool required) {
+  const auto* known =
+      std::find_if(std::begin(kKnown), std::end(kKnown), [&](const KnownExtension& e) { return e.name == name; });
+  if (known == std::end(kKnown)) return {name, required, ignored, "not known, what it brings is left out"};
+  return {name, required, known->treatment, std::string(known->meaning)};
+}
+
+}  // namespace alhazen
