@@ -150,7 +150,7 @@ TEST(GltfErrors, NameThePlaceWhatWasFoundAndWhatWasExpected) {
       {"/accessors/0/bufferView", 99, "/accessors/0/bufferView: index 99 out of range, /bufferViews has 8"},
       {"/accessors/0/bufferView", -5, "/accessors/0/bufferView: expected an index into /bufferViews, found -5"},
       {"/accessors/0/componentType", 5124,
-       "/accessors/0/componentType: expected one of 5120, 5121, 5122, 5123, 5125, 5126, found 5124"},
+       "/accessors/0/componentType: expected one of 5120, 5121, 5122, 5123, 5125, 5126, 5130, found 5124"},
       {"/accessors/0/type", "VEC5",
        "/accessors/0/type: expected one of SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4, found \"VEC5\""},
       {"/accessors/0/normalized", 1, "/accessors/0/normalized: expected true or false, found 1"},
