@@ -91,6 +91,7 @@ struct Session {
   std::string source;  // as in `reproduction`
   RecordFile records;
   Faults faults;
+  RelationReport relations;
   Tally total;
 
   void check_family(const Family& family, Population population) {
@@ -109,6 +110,7 @@ struct Session {
     std::printf("%s", table_row(family.name, name_of(population), tally).c_str());
     std::fflush(stdout);
     total.add(tally);
+    relations.add(family.name, population, arguments.options.seed, tally.relations);
   }
 };
 
@@ -133,12 +135,13 @@ int run_crosscheck(Arguments& arguments) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
   stop_on_signal(g_stop);
 
-  Session session{arguments, source, RecordFile(arguments.json), {}, {}};
+  Session session{arguments, source, RecordFile(arguments.json), {}, {}, {}};
   std::printf("%s", table_head().c_str());
   for (const Family& family : families)
     for (const Population population : populations)
       if (!g_stop) session.check_family(family, population);
-  std::printf("%s\n%s", table_row("all", "", session.total).c_str(), session.faults.text().c_str());
+  std::printf("%s\n%s\n%s", table_row("all", "", session.total).c_str(), session.relations.text().c_str(),
+              session.faults.text().c_str());
   session.records.close();
   if (caught_signal() != 0) return 128 + caught_signal();
   return session.total.failures() > 0 ? kIntersectorWrong : int(ExitStatus::done);

@@ -12,6 +12,7 @@ namespace alhazen::crosscheck {
 namespace {
 
 constexpr uint64_t kSecondInstance = 1024;  // one ray in so many is judged by rational numbers as well
+constexpr uint64_t kRelatedChunks = 8;      // of one chunk in so many, the rays are asked in other ways, too
 constexpr size_t kChunksAtOnce = 32;        // bounds the memory
 
 uint64_t hashed(const std::string& text) {
@@ -52,6 +53,10 @@ class ChunkCheck {
     const Judge judge(result_.subject);
     make_rays(judge, kind);
     ask(family.robust_native);
+    const bool relate = chunk.number % kRelatedChunks == 0 && !options.intersector && !options.only;
+    if (relate)
+      result_.tally.relations = check_relations(result_.subject, rays_, a_, chunk.first,
+                                                {options.seed, kind, uint64_t(population), chunk.number, 3});
     for (uint64_t k = 0; k < rays_.size(); ++k)
       if (!options.only || *options.only == chunk.first + k) judge_ray(judge, k);
   }
@@ -139,7 +144,11 @@ std::vector<Chunk> chunks_of(const Family& family, const Options& options) {
 
 }  // namespace
 
-uint64_t Tally::failures() const { return of(Verdict::b_right) + of(Verdict::both_wrong) + of(Verdict::unexplained); }
+uint64_t Tally::failures() const {
+  uint64_t broken = 0;
+  for (const RelationCount& relation : relations) broken += relation.broken;
+  return of(Verdict::b_right) + of(Verdict::both_wrong) + of(Verdict::unexplained) + broken;
+}
 
 void Tally::add(const Tally& o) {
   const auto sum = [](auto& mine, const auto& theirs) {
@@ -149,6 +158,7 @@ void Tally::add(const Tally& o) {
   sum(verdicts, o.verdicts), sum(a_faults, o.a_faults), sum(b_faults, o.b_faults);
   a_judged += o.a_judged, a_exact += o.a_exact, b_judged += o.b_judged, b_exact += o.b_exact;
   a_worst = std::max(a_worst, o.a_worst), b_worst = std::max(b_worst, o.b_worst);
+  for (size_t k = 0; k < relations.size(); ++k) relations[k].add(o.relations[k]);
   a_quads += o.a_quads, a_rationals += o.a_rationals, judge_rationals += o.judge_rationals;
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "crosscheck/population.h"
+#include "crosscheck/relations.h"
 #include "crosscheck/verdict.h"
 
 namespace alhazen::crosscheck {
@@ -44,6 +45,7 @@ struct Tally {
   std::array<uint64_t, kFaults> a_faults{}, b_faults{};
   uint64_t a_judged = 0, a_exact = 0, b_judged = 0, b_exact = 0;  // hits in common with the judge; t correctly rounded
   double a_worst = 0, b_worst = 0;                                // floats
+  RelationCounts relations{};                                     // A asked in other ways
   uint64_t a_quads = 0, a_rationals = 0, judge_rationals = 0;
 
   [[nodiscard]] uint64_t of(Verdict v) const { return verdicts[size_t(v)]; }

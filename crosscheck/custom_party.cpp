@@ -16,15 +16,28 @@ class ShapeParty final : public Party {
         object_from_world_(inverse(world_from_object)) {}
 
   void answer(std::span<const Rayf> rays, std::vector<Answer>& answers) override {
-    wave_.resize(rays.size());
-    for (size_t k = 0; k < rays.size(); ++k) wave_.set(k, rays[k]);
+    load(rays);
     scene_.intersect(wave_, Coherence::incoherent, hits_);
     answers.assign(rays.size(), {});
     for (size_t k = 0; k < rays.size(); ++k)
       if (hits_.object[k] != kNone) answers[k] = answer_of(rays[k], hits_.t[k], int(hits_.part[k]));
   }
 
+  bool answer_shadows(std::span<const Rayf> rays, std::vector<bool>& blocked) override {
+    load(rays);
+    Lanes<Rgb> visible;
+    scene_.transmittance(wave_, Coherence::incoherent, visible);
+    blocked.resize(rays.size());
+    for (size_t k = 0; k < rays.size(); ++k) blocked[k] = max_component(visible[k]) == 0;
+    return true;
+  }
+
  private:
+  void load(std::span<const Rayf> rays) {
+    wave_.resize(rays.size());
+    for (size_t k = 0; k < rays.size(); ++k) wave_.set(k, rays[k]);
+  }
+
   static Geometry geometry_of(Shape shape, const Affine3d& m) {
     Geometry geometry;
     geometry.shapes.push_back(std::move(shape));

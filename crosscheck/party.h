@@ -25,6 +25,8 @@ class Party {
   virtual ~Party() = default;
   /// One answer for each ray. Rays are traced in packets of neighbours. Safe from one thread at a time.
   virtual void answer(std::span<const Rayf> rays_world, std::vector<Answer>& answers) = 0;
+  /// Whether each ray is blocked, by the party's own shadow query. False where it has none.
+  virtual bool answer_shadows(std::span<const Rayf> /*rays_world*/, std::vector<bool>& /*blocked*/) { return false; }
 };
 
 /// The custom intersector as traversal calls it: shapes through AcceleratedScene's packets, triangles as a user

@@ -73,6 +73,28 @@ std::string table_row(const std::string& family, const std::string& population, 
       n(t.judge_rationals));
 }
 
+void RelationReport::add(const std::string& family, Population population, uint64_t seed,
+                         const RelationCounts& counts) {
+  for (size_t k = 0; k < counts.size(); ++k) {
+    counts_[k].add(counts[k]);
+    if (counts[k].broken == 0 || !examples_[k].empty()) continue;
+    examples_[k] = "alhazen crosscheck --shape " + family + " --population " + name_of(population) + " --seed " +
+                   std::to_string(seed) + " --only " + std::to_string(*counts[k].first_broken);
+  }
+}
+
+std::string RelationReport::text() const {
+  std::string text;
+  for (size_t k = 0; k < counts_.size(); ++k) {
+    if (counts_[k].rays == 0) continue;
+    text += formatted("  %-18s %10llu rays %8llu broken", name_of(Relation(k)),
+                      static_cast<unsigned long long>(counts_[k].rays),
+                      static_cast<unsigned long long>(counts_[k].broken)) +
+            (examples_[k].empty() ? "" : "  e.g. " + examples_[k]) + "\n";
+  }
+  return text.empty() ? text : "A, asked in other ways:\n" + text;
+}
+
 std::string reproduction(const std::string& family, const Case& c, uint64_t seed, const std::string& source) {
   return "alhazen crosscheck" + source + " --shape " + family + " --population " + name_of(c.population) + " --seed " +
          std::to_string(seed) + " --only " + std::to_string(c.index);

@@ -37,4 +37,16 @@ class Faults {
   Table a_, b_;
 };
 
+/// How often each relation was asked for and did not hold, over all families and populations.
+class RelationReport {
+ public:
+  void add(const std::string& family, Population population, uint64_t seed, const RelationCounts& counts);
+  /// A paragraph; empty where nothing was asked.
+  [[nodiscard]] std::string text() const;
+
+ private:
+  RelationCounts counts_{};
+  std::array<std::string, kRelations> examples_;  // the command of the first that does not hold
+};
+
 }  // namespace alhazen::crosscheck

@@ -6,8 +6,8 @@
 namespace alhazen::crosscheck {
 namespace {
 
-constexpr float kLargestCoordinate = 1.844e18f;  // Embree's
-constexpr double kUnclearNormal = 0.1;           // radians: what turns so much with t is not judged
+constexpr float kLargestCoordinate = 1.8e18f;  // just within Embree's limit
+constexpr double kUnclearNormal = 0.1;         // radians: what turns so much with t is not judged
 
 /// Floats in their order, as consecutive integers.
 int64_t ordinal(float x) {
