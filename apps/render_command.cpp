@@ -13,9 +13,9 @@
 #include "accel/accelerated_scene.h"
 #include "apps/exposure.h"
 #include "apps/interruption.h"
+#include "apps/pick_camera.h"
 #include "apps/picture_metadata.h"
 #include "apps/render_arguments.h"
-#include "apps/suggestion.h"
 #include "core/error.h"
 #include "core/fork_join.h"
 #include "loaders/gltf.h"
@@ -45,22 +45,6 @@ class Stopwatch {
 struct PhaseSeconds {
   double load = 0, build = 0, render = 0, write = 0;
 };
-
-Camera pick_camera(const Scene& scene, const std::string& wanted, double aspect) {
-  if (wanted.empty())
-    return scene.cameras.empty() ? framing_camera(scene.geometry, aspect) : scene.cameras[0];
-  for (size_t i = 0; i < scene.cameras.size(); ++i)
-    if (std::to_string(scene.camera_index[i]) == wanted) return scene.cameras[i];
-  std::vector<std::string> names, descriptions;
-  for (size_t i = 0; i < scene.cameras.size(); ++i) {
-    const std::string& name = scene.cameras[i].name;
-    if (name == wanted) return scene.cameras[i];
-    if (!name.empty()) names.push_back(name);
-    descriptions.push_back(std::to_string(scene.camera_index[i]) + (name.empty() ? "" : " '" + name + "'"));
-  }
-  throw UsageError("--camera: there is no camera '" + wanted + "'; the scene has " +
-                   (descriptions.empty() ? "none" : joined(descriptions)) + did_you_mean(wanted, names));
-}
 
 void set_up_lights(Scene& scene, const Camera& camera, const RenderArguments& arguments) {
   if (arguments.ambient) scene.ambient = *arguments.ambient, scene.has_ambient = true;

@@ -11,9 +11,8 @@
 namespace alhazen::crosscheck {
 namespace {
 
-constexpr uint64_t kSecondInstance = 1024;  // one ray in so many is judged by rational numbers as well
-constexpr uint64_t kRelatedChunks = 8;      // of one chunk in so many, the rays are asked in other ways, too
-constexpr size_t kChunksAtOnce = 32;        // bounds the memory
+constexpr uint64_t kRelatedChunks = 8;  // of one chunk in so many, the rays are asked in other ways, too
+constexpr size_t kChunksAtOnce = 32;    // bounds the memory
 
 uint64_t hashed(const std::string& text) {
   uint64_t h = 0xcbf29ce484222325u;  // FNV-1a
@@ -32,10 +31,6 @@ struct ChunkResult {
   std::vector<Case> cases;
 };
 
-bool same(const Judgement& a, const Judgement& b) {
-  return a.hit == b.hit && (!a.hit || (a.t == b.t && a.face == b.face));
-}
-
 void measure_t(const Answer& answer, const Judgement& truth, uint64_t& judged, uint64_t& exact, double& worst) {
   if (!answer.asked || !answer.hit || !truth.hit) return;
   const double off = floats_between(answer.t, truth.t);
@@ -46,13 +41,13 @@ class ChunkCheck {
  public:
   ChunkCheck(const Family& family, Population population, const Options& options, const Chunk& chunk,
              ChunkResult& result)
-      : population_(population), options_(options), chunk_(chunk), result_(result) {
+      : population_(population), options_(options), chunk_(chunk), result_(result), robust_(family.robust_native) {
     const uint64_t kind = hashed(family.name);
     Random random{options.seed, kind, uint64_t(population), chunk.number, 1};
     result_.subject = family.subject(chunk.number, population == Population::lattice, random);
     const Judge judge(result_.subject);
     make_rays(judge, kind);
-    ask(family.robust_native);
+    ask();
     const bool relate = chunk.number % kRelatedChunks == 0 && !options.intersector && !options.only;
     if (relate)
       result_.tally.relations = check_relations(result_.subject, rays_, a_, chunk.first,
@@ -71,7 +66,7 @@ class ChunkCheck {
   }
 
   /// Rays out of the domain are not asked about: Debian's Embree ends the program on some of them.
-  void ask(bool robust) {
+  void ask() {
     std::vector<Rayf> rays = rays_;
     for (Rayf& ray : rays)
       if (!in_domain(ray)) ray = Rayf{{0, 0, 0}, {0, 0, 1}};
@@ -81,7 +76,7 @@ class ChunkCheck {
     result_.tally.a_quads = after.quad - before.quad, result_.tally.a_rationals = after.exact - before.exact;
     const auto native = native_subject(result_.subject);
     if (!native) return;
-    if (const auto party = native_party(native->subject, robust)) party->answer(rays, b_);
+    if (const auto party = native_party(native->subject, robust_)) party->answer(rays, b_);
     if (native->rounded) native_judge_ = std::make_unique<Judge>(native->subject);
   }
 
@@ -95,10 +90,11 @@ class ChunkCheck {
            .truth = {},
            .b_truth = {},
            .b_fault = {},
-           .verdict = Verdict::out_of_domain};
+           .verdict = Verdict::out_of_domain,
+           .robust_native = robust_};
     if (!b_.empty() && b_[k].asked) c.b = b_[k];
     if (in_domain(c.ray)) decide(judge, c);
-    count(c);
+    count(c, result_.tally);
     result_.cases.push_back(std::move(c));
   }
 
@@ -109,25 +105,15 @@ class ChunkCheck {
     if (c.b && native_judge_) c.b_truth = native_judge_->closest(c.ray);
     if (c.b) c.b_fault = fault_of(*c.b, truth_for_b(c), options_.t_tolerance_b);
     c.verdict = verdict_of(c.a_fault, c.b_fault, c.truth);
-    if (c.index % kSecondInstance == 0 && !same(c.truth, judge.closest_exactly(c.ray)))
+    if (c.index % kSecondInstance == 0 && !same_answer(c.truth, judge.closest_exactly(c.ray)))
       c.verdict = Verdict::unexplained;
-  }
-
-  void count(const Case& c) {
-    Tally& tally = result_.tally;
-    ++tally.rays, ++tally.verdicts[size_t(c.verdict)];
-    tally.hits += c.truth.hit, tally.judge_rationals += c.truth.by == JudgedBy::rationals;
-    ++tally.a_faults[size_t(c.a_fault)];
-    measure_t(c.a, c.truth, tally.a_judged, tally.a_exact, tally.a_worst);
-    if (!c.b_fault) return;
-    ++tally.b_asked, ++tally.b_faults[size_t(*c.b_fault)];
-    measure_t(*c.b, truth_for_b(c), tally.b_judged, tally.b_exact, tally.b_worst);
   }
 
   Population population_;
   const Options& options_;
   Chunk chunk_;
   ChunkResult& result_;
+  bool robust_;
   std::vector<Rayf> rays_;
   std::vector<Answer> a_, b_;
   std::unique_ptr<Judge> native_judge_;  // where B holds another surface
@@ -148,6 +134,16 @@ uint64_t Tally::failures() const {
   uint64_t broken = 0;
   for (const RelationCount& relation : relations) broken += relation.broken;
   return of(Verdict::b_right) + of(Verdict::both_wrong) + of(Verdict::unexplained) + broken;
+}
+
+void count(const Case& c, Tally& tally) {
+  ++tally.rays, ++tally.verdicts[size_t(c.verdict)];
+  tally.hits += c.truth.hit, tally.judge_rationals += c.truth.by == JudgedBy::rationals;
+  ++tally.a_faults[size_t(c.a_fault)];
+  measure_t(c.a, c.truth, tally.a_judged, tally.a_exact, tally.a_worst);
+  if (!c.b_fault) return;
+  ++tally.b_asked, ++tally.b_faults[size_t(*c.b_fault)];
+  measure_t(*c.b, truth_for_b(c), tally.b_judged, tally.b_exact, tally.b_worst);
 }
 
 void Tally::add(const Tally& o) {

@@ -24,7 +24,7 @@ struct Options {
 struct Case {
   Population population;
   uint64_t index;
-  const Subject* subject;
+  const Subject* subject;  // null: a scene's ray that nobody says hits anything, or on which all agree
   Rayf ray;
   Answer a;
   std::optional<Answer> b;
@@ -33,6 +33,10 @@ struct Case {
   Fault a_fault = Fault::none;
   std::optional<Fault> b_fault;
   Verdict verdict;
+  bool robust_native = false;  // the flag of B's scene
+  // Scenes, in words: what each party hits. Filled where they disagree or one ray is asked about.
+  std::string a_surface = {}, b_surface = {}, true_surface = {};
+  uint32_t object = kNone;  // scenes: what is truly hit
 };
 
 /// What B is measured by.
@@ -52,6 +56,9 @@ struct Tally {
   [[nodiscard]] uint64_t failures() const;
   void add(const Tally& other);
 };
+
+/// Adds one case to what is counted of it alone: everything but `a_quads` and `a_rationals`.
+void count(const Case& c, Tally& tally);
 
 /// What becomes of a run while it goes on, all called from one thread in the order of the rays.
 struct Observer {

@@ -45,12 +45,8 @@ class ShapeParty final : public Party {
     return geometry;
   }
 
-  /// The normal as shading takes it: at the point of the surface nearest to the rounded hit.
   [[nodiscard]] Answer answer_of(const Rayf& ray, float t, int face) const {
-    const Vec3d p_world = Vec3d(ray.origin) + Vec3d(ray.direction) * double(t);
-    const Vec3d p_near = transform_point(object_from_world_, p_world);
-    const Vec3d n =
-        std::visit([&](const auto& s) { return normal(s, project(s, p_near, face), face); }, geometry_.shapes.front());
+    const Vec3d n = normal_at_hit(geometry_.shapes.front(), object_from_world_, ray, t, face);
     return {.hit = true, .t = t, .face = face, .normal_object = n};
   }
 
@@ -79,6 +75,12 @@ class TriangleParty final : public Party {
 };
 
 }  // namespace
+
+Vec3d normal_at_hit(const Shape& shape, const Affine3d& object_from_world, const Rayf& ray, float t, int face) {
+  const Vec3d p_world = Vec3d(ray.origin) + Vec3d(ray.direction) * double(t);
+  const Vec3d p_near = transform_point(object_from_world, p_world);
+  return std::visit([&](const auto& s) { return normal(s, project(s, p_near, face), face); }, shape);
+}
 
 std::unique_ptr<Party> custom_party(const Subject& subject) {
   return std::visit(

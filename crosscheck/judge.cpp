@@ -45,6 +45,12 @@ Vec3d unit_normal(const Surface& surface, const Vec3d& p, int face) {
   return size > 0 && is_finite(n) ? normalize(n / size) : Vec3d{};
 }
 
+/// Barycentric weights of a point of the triangle.
+void weigh(const Triangle& t, const Vec3d& p, Judgement& j) {
+  const Vec3d n = cross(t.b - t.a, t.c - t.a);
+  j.u = dot(cross(p - t.a, t.c - t.a), n) / dot(n, n), j.v = dot(cross(t.b - t.a, p - t.a), n) / dot(n, n);
+}
+
 bool in_range(float t, const Rayf& ray) { return t >= ray.t_min && t <= ray.t_max; }
 
 /// The surface and its place in one of the interval arithmetics.
@@ -90,6 +96,7 @@ struct Judge::Impl {
     const Vec3d p_object{at(0), at(1), at(2)};
     const Vec3d d{double(line.direction.x.mid), double(line.direction.y.mid), double(line.direction.z.mid)};
     j.normal_object = unit_normal(subject.surface, p_object, j.face);
+    if (const auto* triangle = std::get_if<Triangle>(&subject.surface)) weigh(*triangle, p_object, j);
     const double d_size = size(line.direction), across = dot(j.normal_object, d / d_size);
     const double off = std::abs(double(t)) * d_size * 0x1p-22 + size(line.origin) * 1e-13;
     j.normal_tolerance = 1e-9;

@@ -19,9 +19,16 @@ struct Judgement {
   int side = 0;                 // of the ray against the normal: -1 from outside, 1 from inside, 0 grazing
   Vec3d normal_object;          // unit, or zero where there is none
   double normal_tolerance = 0;  // by how much, in radians, an error of one unit in the last place of t may turn it
+  double u = 0, v = 0;          // triangles: barycentric weights of the second and third vertex
   Tie tie = Tie::none;
   JudgedBy by = JudgedBy::doubles;
 };
+
+/// One ray in so many is judged by rational numbers as well.
+inline constexpr uint64_t kSecondInstance = 1024;
+[[nodiscard]] inline bool same_answer(const Judgement& a, const Judgement& b) {
+  return a.hit == b.hit && (!a.hit || (a.t == b.t && a.face == b.face));
+}
 
 class Judge {
  public:

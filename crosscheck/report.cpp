@@ -1,7 +1,11 @@
 #include "crosscheck/report.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cstdio>
+#include <cstring>
 
+#include "crosscheck/edge_distance.h"
 #include "crosscheck/subject_json.h"
 
 namespace alhazen::crosscheck {
@@ -29,12 +33,14 @@ Json answer_json(const Answer& answer, const Judgement& truth, Fault fault) {
     if (answer.face != kNoFace) json["face"] = answer.face;
     if (truth.hit) json["t_error_ulp"] = floats_between(answer.t, truth.t);
     if (dot(answer.normal_object, answer.normal_object) > 0) json["normal"] = hex(answer.normal_object);
+    if (answer.native && answer.native->normal_object != Vec3d{}) json["normal"] = hex(answer.native->normal_object);
+    if (answer.native && answer.native->has_uv) json["uv"] = {hex(answer.native->u), hex(answer.native->v)};
   }
   json["fault"] = name_of(fault);
   return json;
 }
 
-Json truth_json(const Judgement& truth) {
+Json truth_json(const Judgement& truth, bool triangle) {
   constexpr const char* kSides[] = {"inside", "grazing", "outside"};
   constexpr const char* kTies[] = {"none", "edge", "tangent", "coplanar"};
   constexpr const char* kBy[] = {"double intervals", "double-double intervals", "rationals"};
@@ -42,9 +48,21 @@ Json truth_json(const Judgement& truth) {
   if (truth.hit) {
     json["t"] = hex(truth.t), json["face"] = truth.face, json["side"] = kSides[1 - truth.side];
     json["normal"] = hex(truth.normal_object);
+    if (triangle) json["uv"] = {hex(truth.u), hex(truth.v)};
   }
   json["tie"] = kTies[size_t(truth.tie)], json["by"] = kBy[size_t(truth.by)];
   return json;
+}
+
+void name_surface(Json& party, const std::string& surface) {
+  if (!surface.empty()) party["surface"] = surface;
+}
+
+/// How near it was.
+Json edge_json(const Subject& subject, const Rayf& ray) {
+  const std::optional<EdgeDistance> edge = edge_distance(subject, ray);
+  if (!edge) return nullptr;
+  return {{"nearest", edge->feature}, {"distance_ulp", edge->ulp}};
 }
 
 std::string paragraph(const std::string& title, const std::map<std::pair<std::string, Fault>, std::string>& lines) {
@@ -73,13 +91,11 @@ std::string table_row(const std::string& family, const std::string& population, 
       n(t.judge_rationals));
 }
 
-void RelationReport::add(const std::string& family, Population population, uint64_t seed,
-                         const RelationCounts& counts) {
+void RelationReport::add(const RelationCounts& counts, const std::function<std::string(uint64_t)>& command) {
   for (size_t k = 0; k < counts.size(); ++k) {
     counts_[k].add(counts[k]);
     if (counts[k].broken == 0 || !examples_[k].empty()) continue;
-    examples_[k] = "alhazen crosscheck --shape " + family + " --population " + name_of(population) + " --seed " +
-                   std::to_string(seed) + " --only " + std::to_string(*counts[k].first_broken);
+    examples_[k] = command(*counts[k].first_broken);
   }
 }
 
@@ -95,9 +111,18 @@ std::string RelationReport::text() const {
   return text.empty() ? text : "A, asked in other ways:\n" + text;
 }
 
-std::string reproduction(const std::string& family, const Case& c, uint64_t seed, const std::string& source) {
-  return "alhazen crosscheck" + source + " --shape " + family + " --population " + name_of(c.population) + " --seed " +
-         std::to_string(seed) + " --only " + std::to_string(c.index);
+std::string shell_word(const std::string& text) {
+  const auto plain = [](char c) { return std::isalnum(uint8_t(c)) || std::strchr("_-./+,:@%", c); };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string reproduction(const std::string& family, Population population, uint64_t index, uint64_t seed,
+                         const std::string& source) {
+  return "alhazen crosscheck" + source + " --shape " + shell_word(family) + " --population " + name_of(population) +
+         " --seed " + std::to_string(seed) + " --only " + std::to_string(index);
 }
 
 std::string record(const std::string& family, const Case& c, const Options& options, const std::string& source) {
@@ -107,14 +132,35 @@ std::string record(const std::string& family, const Case& c, const Options& opti
             {"seed", options.seed},
             {"index", c.index},
             {"ray", to_json(c.ray)},
-            {"subject", to_json(*c.subject)},
+            {"subject", c.subject ? to_json(*c.subject) : Json()},
             {"A", answer_json(c.a, c.truth, c.a_fault)}};
-  if (c.b && c.b_fault) json["B"] = answer_json(*c.b, truth_for_b(c), *c.b_fault);
-  if (c.b_truth) json["J_of_surface_in_floats"] = truth_json(*c.b_truth);
-  json["J"] = truth_json(c.truth);
-  json["embree"] = embree_version();
-  json["again"] = reproduction(family, c, options.seed, source);
-  return json.dump();
+  name_surface(json["A"], c.a_surface);
+  const bool triangle = c.subject && std::holds_alternative<Triangle>(c.subject->surface);
+  if (c.b && c.b_fault) json["B"] = answer_json(*c.b, truth_for_b(c), *c.b_fault), name_surface(json["B"], c.b_surface);
+  if (c.b_truth) json["J_of_surface_in_floats"] = truth_json(*c.b_truth, triangle);
+  json["J"] = truth_json(c.truth, triangle);
+  name_surface(json["J"], c.true_surface);
+  json["edge"] = c.subject ? edge_json(*c.subject, c.ray) : Json();
+  const EmbreeFacts& embree = embree_facts();
+  json["embree"] = {{"version", embree.version},
+                    {"isa", embree.isa},
+                    {"lanes", embree.lanes},
+                    {"scene_flags_A", "robust"},
+                    {"scene_flags_B", c.robust_native ? "robust" : "none"}};
+  json["again"] = reproduction(family, c.population, c.index, options.seed, source);
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string picture_text(const PictureTally& picture, const std::string& source) {
+  std::string text = formatted(
+      "The renderer's own picture of this view, whose triangles are Embree's: %llu of %llu pixels show another surface "
+      "than is there; elsewhere t is off by up to %.3g floats.\n",
+      static_cast<unsigned long long>(picture.other_surface), static_cast<unsigned long long>(picture.pixels),
+      picture.worst_t);
+  if (picture.example)
+    text +=
+        "  e.g. alhazen crosscheck" + source + " --population camera --only " + std::to_string(*picture.example) + "\n";
+  return text;
 }
 
 void Faults::add(const std::string& family, const Case& c, const std::string& command) {
@@ -137,7 +183,7 @@ std::string Faults::text() const {
     if (table->empty()) continue;
     std::map<std::pair<std::string, Fault>, std::string> lines;
     for (const auto& [key, entry] : *table)
-      lines[key] = formatted("%-15s %8llu x %-12s e.g. ", key.first.c_str(),
+      lines[key] = formatted("%-15s %8llu x %-13s e.g. ", key.first.c_str(),
                              static_cast<unsigned long long>(entry.count), name_of(key.second)) +
                    entry.example;
     text += paragraph(title, lines);

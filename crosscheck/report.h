@@ -5,7 +5,7 @@
 #include <ostream>
 #include <string>
 
-#include "crosscheck/crosscheck.h"
+#include "crosscheck/scene_check.h"
 
 namespace alhazen::crosscheck {
 
@@ -13,13 +13,19 @@ namespace alhazen::crosscheck {
 [[nodiscard]] std::string table_head();
 [[nodiscard]] std::string table_row(const std::string& family, const std::string& population, const Tally& tally);
 
+/// The text as a shell takes it for one word.
+[[nodiscard]] std::string shell_word(const std::string& text);
+
 /// The command that judges this one ray again. `source`: scene or intersector arguments, with a space in front.
-[[nodiscard]] std::string reproduction(const std::string& family, const Case& c, uint64_t seed,
+[[nodiscard]] std::string reproduction(const std::string& family, Population population, uint64_t index, uint64_t seed,
                                        const std::string& source);
 
 /// One line of JSON without its end: ray and subject in hexadecimal floats, what the parties say, how far off each is.
 [[nodiscard]] std::string record(const std::string& family, const Case& c, const Options& options,
                                  const std::string& source);
+
+/// How the renderer's own picture compares, in a sentence. `source`: as for `reproduction`.
+[[nodiscard]] std::string picture_text(const PictureTally& picture, const std::string& source);
 
 /// How often a party is wrong, and the first example of each fault.
 class Faults {
@@ -40,7 +46,8 @@ class Faults {
 /// How often each relation was asked for and did not hold, over all families and populations.
 class RelationReport {
  public:
-  void add(const std::string& family, Population population, uint64_t seed, const RelationCounts& counts);
+  /// `command`: of the ray of a number.
+  void add(const RelationCounts& counts, const std::function<std::string(uint64_t index)>& command);
   /// A paragraph; empty where nothing was asked.
   [[nodiscard]] std::string text() const;
 

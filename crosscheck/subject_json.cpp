@@ -57,6 +57,7 @@ Json hex(const Vec3d& v) { return {hex(v.x), hex(v.y), hex(v.z)}; }
 
 Json to_json(const Subject& subject) {
   Json json = std::visit([](const auto& s) { return surface_json(s); }, subject.surface);
+  if (!subject.origin.empty()) json["from"] = subject.origin;
   json["world_from_object_columns"] = map_json(subject.world_from_object);
   return json;
 }

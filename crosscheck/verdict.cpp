@@ -24,8 +24,8 @@ const char* name_of(Verdict verdict) {
 }
 
 const char* name_of(Fault fault) {
-  constexpr const char* names[kFaults] = {"none",       "false miss", "false hit",   "wrong t",
-                                          "wrong face", "wrong side", "wrong normal"};
+  constexpr const char* names[kFaults] = {"none",       "false miss", "false hit",    "wrong t",
+                                          "wrong face", "wrong side", "wrong normal", "wrong surface"};
   return names[size_t(fault)];
 }
 

@@ -10,16 +10,13 @@
 
 #include "core/fork_join.h"
 #include "core/sampling.h"
+#include "renderer/camera_cell.h"
 #include "renderer/camera_ray.h"
 #include "renderer/surface.h"
 #include "renderer/whitted.h"
 
 namespace alhazen {
 namespace {
-
-// Pixels a side of a cell: the unit that one wave belongs to, aligned to the image, so that the grouping of rays into
-// packets never depends on tiles, threads or crops.
-constexpr int kCellSize = 32;
 
 bool is_present(const void* data, const Crossing& crossing) noexcept {
   const Scene& scene = *static_cast<const Scene*>(data);
@@ -34,27 +31,19 @@ Rgb light_passing(const void* data, const Crossing& crossing) noexcept {
   return straight_transmittance(scene.materials[s.material], texture_table(scene), s.inputs());
 }
 
-struct Cell {
-  int x0, y0, x1, y1;  // pixels, end exclusive
-};
-
-/// The camera rays of one sample of every pixel, neighbours side by side in blocks of 4 x 4.
+/// The camera rays of one sample of every pixel.
 void push_camera_rays(const Camera& camera, const RenderOptions& options, const Cell& cell, uint32_t sample,
                       PathWave& wave) {
   wave.resize(0);
-  for (int by = 0; by < kCellSize; by += 4)
-    for (int bx = 0; bx < kCellSize; bx += 4)
-      for (int k = 0; k < 16; ++k) {
-        const int x = cell.x0 + bx + k % 4, y = cell.y0 + by + k / 4;
-        if (x >= cell.x1 || y >= cell.y1) continue;
-        double fx = x + 0.5, fy = y + 0.5;
-        if (options.samples > 1) {
-          const Vec2f u = sobol_owen(sample, mix_bits(uint32_t(x) + mix_bits(uint32_t(y))));
-          fx += double(sample_tent(u.x)), fy += double(sample_tent(u.y));
-        }
-        const uint32_t pixel = uint32_t((y - cell.y0) * kCellSize + (x - cell.x0));
-        wave.push(camera_ray(camera, options.width, options.height, fx, fy), pixel, Rgb(1.0f), 0, RayKind::camera);
-      }
+  for_each_pixel(cell, [&](int x, int y) {
+    double fx = x + 0.5, fy = y + 0.5;
+    if (options.samples > 1) {
+      const Vec2f u = sobol_owen(sample, mix_bits(uint32_t(x) + mix_bits(uint32_t(y))));
+      fx += double(sample_tent(u.x)), fy += double(sample_tent(u.y));
+    }
+    const uint32_t pixel = uint32_t((y - cell.y0) * kCellSize + (x - cell.x0));
+    wave.push(camera_ray(camera, options.width, options.height, fx, fy), pixel, Rgb(1.0f), 0, RayKind::camera);
+  });
 }
 
 struct CellWorker {
