@@ -22,6 +22,12 @@ uint64_t triangle_count(const Mesh& mesh) {
   return count;
 }
 
+/// Without those that are made from others.
+size_t image_count(const LoadedScene& loaded) {
+  return size_t(std::count_if(loaded.encoded.begin(), loaded.encoded.end(),
+                              [](const EncodedImage& image) { return image.glossiness_of == kNone; }));
+}
+
 Json counts_json(const LoadedScene& loaded) {
   const Scene& scene = loaded.scene;
   const Geometry& geometry = scene.geometry;
@@ -37,7 +43,7 @@ Json counts_json(const LoadedScene& loaded) {
           {"shape_instances", geometry.shape_instances.size()},
           {"materials", scene.materials.size() - 1},  // without glTF's default
           {"textures", scene.textures.size()},
-          {"images", loaded.encoded.size()}};
+          {"images", image_count(loaded)}};
 }
 
 Json lights_json(const Scene& scene) {

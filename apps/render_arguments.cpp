@@ -52,6 +52,14 @@ void add_picture_options(CLI::App& command, RenderArguments& arguments) {
       .add_option("--camera", arguments.camera,
                   "Index in the file's cameras, or a name; by default the scene's first, or one that shows it all")
       ->type_name("INDEX|NAME");
+  command
+      .add_option("--scene", arguments.choice.scene,
+                  "Index or name of one of the file's scenes; by default its own choice")
+      ->type_name("INDEX|NAME");
+  command
+      .add_option("--variant", arguments.choice.variant,
+                  "Index or name of a variant of the materials (KHR_materials_variants)")
+      ->type_name("INDEX|NAME");
   add_choice<Integrator>(command, "--integrator", options.integrator,
                          {{"whitted", Integrator::whitted}, {"signature", Integrator::signature}},
                          "What a pixel shows: light, or which node, primitive and material are seen");
@@ -160,6 +168,8 @@ void check_arguments(const RenderArguments& arguments) {
 std::string picture_options(const RenderArguments& arguments) {
   const RenderOptions& options = arguments.options;
   std::string text = "--size " + std::to_string(options.width) + "x" + std::to_string(options.height);
+  if (!arguments.choice.scene.empty()) text += " --scene '" + arguments.choice.scene + "'";
+  if (!arguments.choice.variant.empty()) text += " --variant '" + arguments.choice.variant + "'";
   if (!arguments.camera.empty()) text += " --camera '" + arguments.camera + "'";
   text += options.integrator == Integrator::signature ? " --integrator signature" : " --integrator whitted";
   text += " --spp " + std::to_string(options.samples) + " --max-depth " + std::to_string(options.max_depth) +

@@ -7,6 +7,7 @@
 
 #include "apps/progress.h"
 #include "core/vec.h"
+#include "loaders/gltf.h"
 #include "loaders/image_file.h"
 #include "renderer/render.h"
 
@@ -16,6 +17,7 @@ enum class LightChoice : uint8_t { automatic, scene, studio };
 
 struct RenderArguments {
   std::string scene, output;
+  SceneChoice choice;
   std::string camera;  // index or name; empty: the scene's first
   RenderOptions options;
   LightChoice lights = LightChoice::automatic;

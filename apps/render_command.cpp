@@ -153,7 +153,7 @@ int run_render(const RenderArguments& arguments) {
   PhaseSeconds seconds;
   Stopwatch watch;
 
-  LoadedScene loaded = load_gltf(arguments.scene, print_warning);
+  LoadedScene loaded = load_gltf(arguments.scene, print_warning, arguments.choice);
   Scene& scene = loaded.scene;
   bake_single_instances(scene.geometry);
   const Camera camera = pick_camera(scene, arguments.camera, double(options.width) / options.height);
@@ -195,7 +195,8 @@ Command add_render_command(CLI::App& program) {
       "Examples:\n"
       "  alhazen render scene.gltf -o scene.png\n"
       "  alhazen render scene.glb -o beauty.exr --size 1920x1080 --spp 16 --transparent --half\n"
-      "  alhazen render scene.glb -o ids.exr --integrator signature");
+      "  alhazen render scene.glb -o ids.exr --integrator signature\n"
+      "  alhazen render shoe.glb -o shoe.png --variant street --camera 1");
   return {command, [arguments] { return run_render(*arguments); }};
 }
 

@@ -13,7 +13,16 @@ namespace alhazen {
 /// An image still as its file has it; decoding waits until the geometry is on its way.
 struct EncodedImage {
   std::string place;           // for messages: "scene.gltf: /images/3"
-  std::vector<uint8_t> bytes;  // empty: could not be read, a warning was given
+  std::vector<uint8_t> bytes;  // empty: not needed, or could not be read and a warning was given
+  // Where it has none of its own: the roughness 1 - glossiness_factor x alpha of this image.
+  uint32_t glossiness_of = kNone;
+  float glossiness_factor = 1;
+};
+
+/// What of a file is wanted. Each is a name or an index; empty: the file's default.
+struct SceneChoice {
+  std::string scene;
+  std::string variant;  // of KHR_materials_variants
 };
 
 enum class Treatment : uint8_t { supported, approximated, ignored };
@@ -34,7 +43,9 @@ struct LoadedScene {
 
 using WarningSink = std::function<void(const std::string&)>;
 
-/// Throws LoadError naming file, JSON pointer, what was found and what was expected.
-[[nodiscard]] LoadedScene load_gltf(const std::filesystem::path& file, const WarningSink& warn);
+/// Throws LoadError naming file, JSON pointer, what was found and what was expected; UsageError for a choice that the
+/// file does not have.
+[[nodiscard]] LoadedScene load_gltf(const std::filesystem::path& file, const WarningSink& warn,
+                                    const SceneChoice& choice = {});
 
 }  // namespace alhazen

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "loaders/image_ktx.h"
+
 namespace alhazen {
 namespace {
 
@@ -15,7 +17,7 @@ constexpr KnownExtension kKnown[] = {
     {"EXT_mesh_gpu_instancing", ignored, "one instance is seen"},
     {"EXT_mesh_manifold", ignored, "nothing to see"},
     {"EXT_meshopt_compression", supported, "all modes and filters"},
-    {"EXT_texture_webp", ignored, "the fallback image is seen"},
+    {"EXT_texture_webp", supported, ""},
     {"FB_ngon_encoding", supported, "polygon meshes"},
     {"KHR_accessor_float64", approximated, "numbers are rounded to 32 bits"},
     {"KHR_animation_pointer", ignored, "the rest pose is seen"},
@@ -33,25 +35,27 @@ constexpr KnownExtension kKnown[] = {
     {"KHR_materials_emissive_strength", supported, ""},
     {"KHR_materials_ior", supported, "0 too"},
     {"KHR_materials_iridescence", ignored, "the thin film is left out"},
-    {"KHR_materials_pbrSpecularGlossiness", ignored, "the core material is seen"},
+    {"KHR_materials_pbrSpecularGlossiness", supported, "as a dielectric of that reflectance"},
     {"KHR_materials_sheen", ignored, "the fibres are left out"},
     {"KHR_materials_specular", supported, ""},
     {"KHR_materials_transmission", approximated, "thin-walled and clear whatever the roughness"},
     {"KHR_materials_unlit", supported, ""},
-    {"KHR_materials_variants", ignored, "the default materials are seen"},
+    {"KHR_materials_variants", supported, "--variant chooses"},
     {"KHR_materials_volume", ignored, "bodies are thin-walled and clear"},
     {"KHR_materials_volume_scatter", ignored, "bodies are thin-walled and clear"},
     {"KHR_mesh_quantization", supported, ""},
     {"KHR_meshopt_compression", supported, "all modes and filters; version 0 of the vertex codec"},
     {"KHR_node_hoverability", ignored, "nothing to see"},
     {"KHR_node_selectability", ignored, "nothing to see"},
-    {"KHR_node_visibility", ignored, "every node is seen"},
+    {"KHR_node_visibility", supported, "hidden cameras can be used"},
     {"KHR_physics_rigid_bodies", ignored, "nothing moves"},
-    {"KHR_texture_basisu", ignored, "the fallback image is seen, else the material's factor"},
+    {"KHR_texture_basisu", kDecodesKtx ? supported : approximated,
+     kDecodesKtx ? "" : "built without libktx: the fallback image is seen, else the material's factor"},
     {"KHR_texture_transform", supported, "on every texture, texCoord too"},
     {"KHR_xmp", ignored, "nothing to see"},
     {"KHR_xmp_json_ld", ignored, "nothing to see"},
-    {"MSFT_lod", ignored, "all levels are seen"},
+    {"MSFT_lod", supported, "the finest level is seen"},
+    {"MSFT_texture_dds", supported, "formats that OpenImageIO decodes"},
 };
 
 }  // namespace

@@ -1,19 +1,24 @@
-// glTF images, textures and materials, with the KHR and ALHAZEN extensions of materials.
+// glTF materials, with their KHR and ALHAZEN extensions.
 #pragma once
 
 #include <vector>
 
-#include "loaders/gltf_accessor.h"
 #include "loaders/gltf_source.h"
 
 namespace alhazen {
 
-/// The bytes of every image; none, with a warning, for one that cannot be read.
-[[nodiscard]] std::vector<EncodedImage> read_images(GltfSource& source, const GltfBuffers& buffers);
+/// A texture to be made: roughness = 1 - factor x alpha of another.
+struct RoughnessTexture {
+  uint32_t glossiness_texture;
+  float factor;
+};
 
-[[nodiscard]] std::vector<Texture> read_textures(const GltfSource& source);
+struct GltfMaterials {
+  std::vector<Material> materials;          // the file's, then glTF's default one
+  std::vector<char> uses_texture;           // for each of the file's textures, whether a material does
+  std::vector<RoughnessTexture> roughness;  // used under the numbers that follow those of the file's textures
+};
 
-/// The file's materials, then glTF's default one.
-[[nodiscard]] std::vector<Material> read_materials(const GltfSource& source);
+[[nodiscard]] GltfMaterials read_materials(const GltfSource& source);
 
 }  // namespace alhazen

@@ -100,7 +100,7 @@ void repair_normals(TriangleMesh& part) {
 struct Admitted {
   JsonRef r;
   size_t mesh;
-  int mode, material;  // material -1: the default one
+  int mode;
 };
 
 /// Goes through the primitives in their order: what is left out, and what all of them take.
@@ -115,7 +115,7 @@ class Admission {
       const JsonRef primitives = source_.at("meshes", i)["primitives"];
       for (size_t k = 0; k < source_.model.meshes[i].primitives.size(); ++k) {
         const tinygltf::Primitive& in = source_.model.meshes[i].primitives[k];
-        if (admit(in, primitives[k])) admitted.push_back({primitives[k], i, in.mode, in.material});
+        if (admit(in, primitives[k])) admitted.push_back({primitives[k], i, in.mode});
       }
     }
     return admitted;
@@ -164,11 +164,10 @@ class PrimitiveReader {
     vertex_count_ = attribute("POSITION").count;
   }
 
-  TriangleMesh read(uint32_t default_material) {
+  TriangleMesh read() {
     VertexChoice choice = choose_vertices(read_index(), uint32_t(vertex_count_));
     vertices_ = std::move(choice.vertices);
     TriangleMesh part;
-    part.material = admitted_.material >= 0 ? uint32_t(admitted_.material) : default_material;
     part.triangles = triangles_of(draco_ ? TINYGLTF_MODE_TRIANGLES : admitted_.mode, choice.index);
     part.positions = read_vec3("POSITION");
     part.normals = read_vec3("NORMAL");
@@ -257,6 +256,17 @@ class PrimitiveReader {
   std::vector<uint32_t> vertices_;  // those of the file's that are taken along
 };
 
+/// None: the default one.
+std::optional<uint32_t> material_of(const JsonRef& primitive, std::optional<size_t> variant) {
+  const auto e = primitive.extension("KHR_materials_variants");
+  if (variant && e)
+    for (const JsonRef& mapping : e->elements("mappings"))
+      for (const JsonRef& mapped : mapping.elements("variants"))
+        if (mapped.as<size_t>() == *variant) return mapping["material"].as<uint32_t>();
+  if (const auto own = primitive.find("material")) return own->as<uint32_t>();
+  return std::nullopt;
+}
+
 void complete_tangents(std::vector<Mesh>& meshes, const std::vector<Material>& materials) {
   std::vector<TriangleMesh*> lacking;
   for (Mesh& mesh : meshes)
@@ -269,11 +279,13 @@ void complete_tangents(std::vector<Mesh>& meshes, const std::vector<Material>& m
 
 }  // namespace
 
-std::vector<Mesh> read_meshes(GltfSource& source, const GltfBuffers& buffers, const std::vector<Material>& materials) {
+std::vector<Mesh> read_meshes(GltfSource& source, const GltfBuffers& buffers, const std::vector<Material>& materials,
+                              std::optional<size_t> variant) {
   const std::vector<Admitted> admitted = Admission(source, buffers).all();
   std::vector<TriangleMesh> parts(admitted.size());
   for_each_in_parallel(admitted.size(), [&](size_t i) {
-    parts[i] = PrimitiveReader(buffers, admitted[i]).read(uint32_t(materials.size() - 1));
+    parts[i] = PrimitiveReader(buffers, admitted[i]).read();
+    parts[i].material = material_of(admitted[i].r, variant).value_or(uint32_t(materials.size() - 1));
   });
   std::vector<Mesh> meshes;
   for (const tinygltf::Mesh& in : source.model.meshes) meshes.push_back({in.name, {}});

@@ -128,15 +128,15 @@ std::vector<Affine3d> world_from_nodes(const GltfSource& source, const Forest& f
 }
 
 /// The roots of the scene to show.
-std::vector<uint32_t> shown_roots(const GltfSource& source, const Forest& forest, size_t chosen) {
-  if (source.model.scenes.empty()) return forest.roots();
+std::vector<uint32_t> shown_roots(const GltfSource& source, const Forest& forest, std::optional<size_t> chosen) {
+  if (!chosen) return forest.roots();
   std::vector<uint32_t> roots;
   std::vector<char> listed(forest.nodes.size());
-  const std::vector<int>& nodes = source.model.scenes[chosen].nodes;
+  const std::vector<int>& nodes = source.model.scenes[*chosen].nodes;
   for (size_t i = 0; i < nodes.size(); ++i) {
     const auto n = uint32_t(nodes[i]);
     const auto fail = [&](const char* why) {
-      source.at("scenes", chosen)["nodes"][i].fail("node " + std::to_string(n) + why);
+      source.at("scenes", *chosen)["nodes"][i].fail("node " + std::to_string(n) + why);
     };
     if (forest.parent[n] != kNone) fail(" is no root but a child of another node");
     if (listed[n]) fail(" is listed twice");
@@ -144,6 +144,20 @@ std::vector<uint32_t> shown_roots(const GltfSource& source, const Forest& forest
     roots.push_back(n);
   }
   return roots;
+}
+
+/// Which nodes are not seen, by themselves or below one that is not.
+std::vector<char> hidden_nodes(const GltfSource& source, const Forest& forest) {
+  std::vector<char> hidden(forest.nodes.size());
+  for (uint32_t i = 0; i < hidden.size(); ++i) {
+    const JsonRef r = source.at("nodes", i);
+    if (const auto e = r.extension("KHR_node_visibility")) hidden[i] |= char(!e->get("visible", true));
+    if (const auto e = r.extension("MSFT_lod"))  // the node itself is the finest level
+      for (const JsonRef& coarser : e->elements("ids")) hidden[coarser.as<size_t>()] = 1;
+  }
+  for (const uint32_t i : forest.below(forest.roots()))
+    if (forest.parent[i] != kNone) hidden[i] |= hidden[forest.parent[i]];
+  return hidden;
 }
 
 /// Puts into the scene what one node brings.
@@ -154,12 +168,13 @@ class Placer {
       for (const JsonRef& r : e->elements("lights")) lights_.push_back(read_light(r));
   }
 
-  void place(uint32_t node, const Affine3d& world_from_node) {
+  void place(uint32_t node, const Affine3d& world_from_node, bool hidden) {
     const JsonRef r = source_.at("nodes", node);
     const tinygltf::Node& in = source_.model.nodes[node];
     if (!is_finite(world_from_node)) r.fail("its global matrix overflows");
-    if (in.mesh >= 0) place_mesh(r, uint32_t(in.mesh), node, world_from_node);
     if (in.camera >= 0) place_camera(r, uint32_t(in.camera), world_from_node);
+    if (hidden) return;
+    if (in.mesh >= 0) place_mesh(r, uint32_t(in.mesh), node, world_from_node);
     if (const auto e = r.extension("KHR_lights_punctual"))
       place_light(r, (*e)["light"].as<uint32_t>(), world_from_node);
     if (const auto e = r.extension("ALHAZEN_shapes")) place_shape(r, *e, node, world_from_node);
@@ -215,18 +230,18 @@ void read_surroundings(const JsonRef& e, Scene& scene) {
 
 }  // namespace
 
-void read_scene(GltfSource& source, Scene& scene) {
+void read_scene(GltfSource& source, std::optional<size_t> chosen, Scene& scene) {
   for (const tinygltf::Node& node : source.model.nodes) scene.node_names.push_back(node.name);
   const Forest forest = read_forest(source);
   scene.geometry.parent_of_node = forest.parent;
   const std::vector<Affine3d> world = world_from_nodes(source, forest);
-  const auto chosen = size_t(std::max(source.model.defaultScene, 0));
+  const std::vector<char> hidden = hidden_nodes(source, forest);
   std::vector<uint32_t> shown = forest.below(shown_roots(source, forest, chosen));
   std::sort(shown.begin(), shown.end());  // instances, cameras and lights come in the order of their nodes
   Placer placer(source, scene);
-  for (const uint32_t node : shown) placer.place(node, world[node]);
-  if (!source.model.scenes.empty())
-    if (const auto e = source.at("scenes", chosen).extension("ALHAZEN_lights")) read_surroundings(*e, scene);
+  for (const uint32_t node : shown) placer.place(node, world[node], hidden[node]);
+  if (chosen)
+    if (const auto e = source.at("scenes", *chosen).extension("ALHAZEN_lights")) read_surroundings(*e, scene);
 }
 
 }  // namespace alhazen

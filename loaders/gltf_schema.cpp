@@ -93,7 +93,12 @@ Check sampler() {
 }
 
 Check texture() {
-  return object({{"name", text()}, {"source", index_into("/images")}, {"sampler", index_into("/samplers")}});
+  const Check other = object({{"source", index_into("/images")}});
+  return object({{"name", text()},
+                 {"source", index_into("/images")},
+                 {"sampler", index_into("/samplers")},
+                 {"extensions",
+                  object({{"KHR_texture_basisu", other}, {"EXT_texture_webp", other}, {"MSFT_texture_dds", other}})}});
 }
 
 Check texture_info(std::vector<Property> more = {}) {
@@ -132,6 +137,11 @@ Check material_extensions() {
                                                     {"specularTexture", texture_info()},
                                                     {"specularColorFactor", color()},
                                                     {"specularColorTexture", texture_info()}})},
+                 {"KHR_materials_pbrSpecularGlossiness", object({{"diffuseFactor", numbers(4, 0, 1)},
+                                                                 {"diffuseTexture", texture_info()},
+                                                                 {"specularFactor", numbers(3, 0, 1)},
+                                                                 {"glossinessFactor", number(0, 1)},
+                                                                 {"specularGlossinessTexture", texture_info()}})},
                  {"ALHAZEN_materials_phong", phong()}});
 }
 
@@ -156,16 +166,21 @@ Check material() {
 // ---- Meshes, cameras, lights, nodes ----
 
 Check mesh() {
+  const Check mapping =
+      object({{"material", index_into("/materials"), required},
+              {"variants", list_of(index_into("/extensions/KHR_materials_variants/variants")), required}});
+  const Check variants = object({{"mappings", list_of(mapping), required}});
   const Check draco = object(
       {{"bufferView", index_into("/bufferViews"), required}, {"attributes", map_of(integer(0, kNone - 1)), required}});
   const Check attributes = map_of(index_into("/accessors"));
-  const Check primitive =
-      object({{"attributes", attributes, required},
-              {"indices", index_into("/accessors")},
-              {"material", index_into("/materials")},
-              {"mode", integer(0, 6)},
-              {"targets", list_of(attributes)},
-              {"extensions", object({{"FB_ngon_encoding", object({})}, {"KHR_draco_mesh_compression", draco}})}});
+  const Check primitive = object({{"attributes", attributes, required},
+                                  {"indices", index_into("/accessors")},
+                                  {"material", index_into("/materials")},
+                                  {"mode", integer(0, 6)},
+                                  {"targets", list_of(attributes)},
+                                  {"extensions", object({{"FB_ngon_encoding", object({})},
+                                                         {"KHR_draco_mesh_compression", draco},
+                                                         {"KHR_materials_variants", variants}})}});
   return object({{"name", text()}, {"primitives", list_of(primitive), required}, {"weights", list_of(number())}});
 }
 
@@ -212,7 +227,9 @@ Check node() {
   const Check extensions =
       object({{"KHR_lights_punctual", object({{"light", index_into(kLights), required}})},
               {"ALHAZEN_shapes", closed_object({{"shape", index_into("/extensions/ALHAZEN_shapes/shapes"), required},
-                                                {"material", index_into("/materials")}})}});
+                                                {"material", index_into("/materials")}})},
+              {"KHR_node_visibility", object({{"visible", boolean()}})},
+              {"MSFT_lod", object({{"ids", list_of(index_into("/nodes")), required}})}});
   return object({{"name", text()},
                  {"children", list_of(index_into("/nodes"))},
                  {"matrix", numbers(16)},
@@ -232,7 +249,9 @@ Check scene() {
 }
 
 Check gltf() {
+  const Check variant = object({{"name", text(), required}});
   const Check extensions = object({{"KHR_lights_punctual", object({{"lights", list_of(light())}})},
+                                   {"KHR_materials_variants", object({{"variants", list_of(variant), required}})},
                                    {"ALHAZEN_shapes", closed_object({{"shapes", list_of(shape_description())}})}});
   return object({{"asset", object({{"version", check_version, required}}), required},
                  {"extensionsUsed", list_of(text())},

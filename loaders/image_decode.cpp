@@ -5,14 +5,18 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <mutex>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "core/fork_join.h"
+#include "loaders/image_ktx.h"
 
 namespace alhazen {
 namespace {
@@ -39,6 +43,7 @@ void read_samples(OIIO::ImageInput& in, OIIO::TypeDesc type, TextureImage& image
 
 TextureImage decode(const std::vector<uint8_t>& bytes) {
   const std::string format = format_of(bytes);
+  if (is_ktx(bytes)) return decode_ktx(bytes);
   if (format.empty()) throw std::runtime_error("unknown image format");
   OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
   const auto in = OIIO::ImageInput::create(format);
@@ -59,6 +64,26 @@ TextureImage decode(const std::vector<uint8_t>& bytes) {
   else
     read_samples<float>(*in, OIIO::TypeDesc::FLOAT, image);
   in->close();
+  return image;
+}
+
+/// One channel, as many bits as the glossiness has.
+TextureImage roughness_image(const TextureImage& glossiness, float factor) {
+  TextureImage image{glossiness.width, glossiness.height, 1, {}};
+  const auto n = size_t(glossiness.channels);
+  std::visit(
+      [&](const auto& in) {
+        using T = typename std::decay_t<decltype(in)>::value_type;
+        constexpr float most = std::is_floating_point_v<T> ? 1.0f : float(std::numeric_limits<T>::max());
+        std::vector<T> out(in.size() / n);
+        for (size_t i = 0; i < out.size(); ++i) {
+          const float alpha = n % 2 == 0 ? float(in[i * n + n - 1]) : most;
+          const float roughness = most - factor * alpha;
+          out[i] = std::is_floating_point_v<T> ? T(roughness) : T(std::lround(roughness));
+        }
+        image.samples = std::move(out);
+      },
+      glossiness.samples);
   return image;
 }
 
@@ -84,6 +109,9 @@ std::vector<TextureImage> decode_images(const std::vector<EncodedImage>& encoded
       failed("unknown error");
     }
   }));
+  for (size_t i = 0; i < encoded.size(); ++i)
+    if (const uint32_t from = encoded[i].glossiness_of; from != kNone && images[from].width > 0)
+      images[i] = roughness_image(images[from], encoded[i].glossiness_factor);
   return images;
 }
 

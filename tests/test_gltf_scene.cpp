@@ -332,6 +332,14 @@ TEST(GltfTexture, KeepsEveryWrapAndFilterMode) {
         }
 }
 
+/// Images that no material uses are not read.
+void use_images(GltfBuilder& b) {
+  for (size_t i = 0; i < b.root["images"].size(); ++i) {
+    const int texture = b.add("textures", {{"source", i}});
+    b.add("materials", {{"emissiveTexture", {{"index", texture}}}});
+  }
+}
+
 TEST(GltfImage, ComesFromAFileAnUriOrABufferView) {
   const TemporaryFolder folder;
   folder.write("a b.png", "file");
@@ -339,6 +347,7 @@ TEST(GltfImage, ComesFromAFileAnUriOrABufferView) {
   b.add("images", {{"bufferView", b.view("view")}, {"mimeType", "image/png"}});
   b.add("images", {{"uri", "a%20b.png"}});
   b.add("images", {{"uri", "data:image/webp;base64," + base64("data")}});
+  use_images(b);
   const auto encoded = load_file(folder.write("scene.gltf", b.document().dump())).loaded.encoded;
   ASSERT_EQ(encoded.size(), 3u);
   const char* expected[] = {"view", "file", "data"};
@@ -349,6 +358,7 @@ TEST(GltfImage, ComesFromAFileAnUriOrABufferView) {
 TEST(GltfImage, ThatIsMissingIsAWarning) {
   GltfBuilder b;
   b.root["images"] = {{{"uri", "absent.png"}}, {{"name", "nothing"}}};
+  use_images(b);
   const Loaded loaded = load(b);
   ASSERT_EQ(loaded.warnings.size(), 2u);
   EXPECT_TRUE(loaded.warnings[0].ends_with("/images/0/uri: cannot read `absent.png`, taken as white"));

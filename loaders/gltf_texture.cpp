@@ -1,0 +1,92 @@
+#include "loaders/gltf_texture.h"
+
+#include <array>
+
+#include "loaders/gltf_uri.h"
+#include "loaders/image_ktx.h"
+
+namespace alhazen {
+namespace {
+
+Wrap wrap_of(int mode) {
+  return mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? Wrap::clamp_to_edge
+         : mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirrored_repeat
+                                                         : Wrap::repeat;
+}
+
+/// The image to decode; kNone: there is none that can be.
+uint32_t image_of(const JsonRef& texture) {
+  for (const char* name : {"KHR_texture_basisu", "EXT_texture_webp", "MSFT_texture_dds"}) {
+    const auto e = texture.extension(name);
+    if (!e || !e->has("source") || (name == std::string_view("KHR_texture_basisu") && !kDecodesKtx)) continue;
+    return (*e)["source"].as<uint32_t>();
+  }
+  return texture.get("source", kNone);
+}
+
+Texture read_texture(const GltfSource& source, const JsonRef& r) {
+  Texture t;
+  t.image = image_of(r);
+  if (const auto index = r.find("sampler")) {
+    const tinygltf::Sampler& sampler = source.model.samplers[index->as<size_t>()];
+    t.wrap_u = wrap_of(sampler.wrapS);
+    t.wrap_v = wrap_of(sampler.wrapT);
+    t.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+  }
+  return t;
+}
+
+/// No bytes, with a warning, for one that cannot be read.
+Bytes read_image(GltfSource& source, const GltfBuffers& buffers, const JsonRef& r) {
+  if (const auto view = r.find("bufferView")) {
+    const std::span<const uint8_t> bytes = buffers.buffer_view(view->as<int>());
+    return {bytes.begin(), bytes.end()};
+  }
+  const auto uri = r.find("uri");
+  if (!uri) {
+    source.warn(r.pointer(), "has neither `uri` nor `bufferView`, taken as white");
+    return {};
+  }
+  auto bytes = resolve_uri(*uri, source.document.folder);
+  if (!bytes) source.warn(uri->pointer(), "cannot read `" + uri->as<std::string>().substr(0, 80) + "`, taken as white");
+  return bytes ? std::move(*bytes) : Bytes{};
+}
+
+void warn_of_missing_image(GltfSource& source, const JsonRef& texture) {
+  const bool basisu = texture.extension("KHR_texture_basisu").has_value();
+  source.warn(texture.pointer(), basisu
+                                     ? "left out: its image is KTX 2, which this build cannot decode without libktx, "
+                                       "and it has no other"
+                                     : "left out: it has no image that can be decoded here");
+}
+
+}  // namespace
+
+GltfTextures read_textures(GltfSource& source, const GltfBuffers& buffers, const GltfMaterials& materials) {
+  GltfTextures all;
+  const auto textures = source.root().elements("textures"), images = source.root().elements("images");
+  std::vector<char> used(images.size());
+  for (size_t i = 0; i < textures.size(); ++i) {
+    all.textures.push_back(read_texture(source, textures[i]));
+    const uint32_t image = all.textures[i].image;
+    if (!materials.uses_texture[i]) continue;
+    if (image == kNone)
+      warn_of_missing_image(source, textures[i]);
+    else
+      used[image] = 1;
+  }
+  for (size_t i = 0; i < images.size(); ++i)
+    all.images.push_back({source.document.json.file + ": " + images[i].pointer(),
+                          used[i] ? read_image(source, buffers, images[i]) : Bytes{}});
+  for (const RoughnessTexture& made : materials.roughness) {
+    Texture texture = all.textures[made.glossiness_texture];
+    EncodedImage image;
+    image.glossiness_of = texture.image, image.glossiness_factor = made.factor;
+    texture.image = uint32_t(all.images.size());
+    all.textures.push_back(texture);
+    all.images.push_back(std::move(image));
+  }
+  return all;
+}
+
+}  // namespace alhazen
