@@ -27,7 +27,7 @@ LoadedScene load_gltf(const std::filesystem::path& file, const WarningSink& warn
   scene.materials = std::move(materials.materials);
   if (const auto shapes = source.root().extension("ALHAZEN_shapes")) scene.geometry.shapes = read_shapes(*shapes);
   scene.geometry.meshes = read_meshes(source, buffers, scene.materials, variant);
-  read_scene(source, scene_index, scene);
+  read_scene(source, buffers, scene_index, scene);
   return loaded;
 }
 

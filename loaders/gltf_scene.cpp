@@ -5,20 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "loaders/gltf_instancing.h"
+#include "loaders/gltf_transform.h"
+
 namespace alhazen {
 namespace {
 
 // ---- Maps ----
-
-/// The rotation of the quaternion (x, y, z, w), of any length but 0, after the scale.
-Affine3d rotate_scale(const std::array<double, 4>& q, const Vec3d& scale) {
-  const double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], s = 2 / norm;
-  const double x = q[0], y = q[1], z = q[2], w = q[3];
-  return {Vec3d{1 - s * (y * y + z * z), s * (x * y + z * w), s * (x * z - y * w)} * scale.x,
-          Vec3d{s * (x * y - z * w), 1 - s * (x * x + z * z), s * (y * z + x * w)} * scale.y,
-          Vec3d{s * (x * z + y * w), s * (y * z - x * w), 1 - s * (x * x + y * y)} * scale.z,
-          {0, 0, 0}};
-}
 
 Affine3d parent_from_node(const tinygltf::Node& node, const JsonRef& r) {
   if (!node.matrix.empty()) {
@@ -163,7 +156,8 @@ std::vector<char> hidden_nodes(const GltfSource& source, const Forest& forest) {
 /// Puts into the scene what one node brings.
 class Placer {
  public:
-  Placer(GltfSource& source, Scene& scene) : source_(source), scene_(scene) {
+  Placer(GltfSource& source, const GltfBuffers& buffers, Scene& scene)
+      : source_(source), buffers_(buffers), scene_(scene), instances_left_(kMostInstances + buffers.bytes() / 8) {
     if (const auto e = source.root().extension("KHR_lights_punctual"))
       for (const JsonRef& r : e->elements("lights")) lights_.push_back(read_light(r));
   }
@@ -182,10 +176,32 @@ class Placer {
 
  private:
   void place_mesh(const JsonRef& r, uint32_t mesh, uint32_t node, const Affine3d& world_from_node) {
+    if (const auto e = r.extension("EXT_mesh_gpu_instancing")) return place_instances(*e, mesh, node, world_from_node);
     if (is_invertible(world_from_node))
       scene_.geometry.mesh_instances.push_back({mesh, node, world_from_node});
     else
       source_.warn(r.pointer(), "its mesh is left out, its global matrix cannot be inverted");
+  }
+
+  /// Nodes may share the few bytes of a small file, so what all of them unfold to is bounded.
+  void place_instances(const JsonRef& e, uint32_t mesh, uint32_t node, const Affine3d& world_from_node) {
+    const uint64_t count = instance_count(e, buffers_);
+    if (count > instances_left_)
+      e.fail("the instances up to here share their bytes so often that they unfold to too many");
+    instances_left_ -= count;
+    std::vector<MeshInstance>& placed = scene_.geometry.mesh_instances;
+    placed.reserve(placed.size() + count);
+    uint64_t left_out = 0;
+    for (const Affine3f& node_from_instance : read_instances(e, buffers_)) {
+      const Affine3d map = world_from_node * Affine3d(node_from_instance);
+      if (is_invertible(map))
+        placed.push_back({mesh, node, map});
+      else
+        ++left_out;
+    }
+    if (left_out > 0)
+      source_.warn(e.pointer(), std::to_string(left_out) + " of its " + std::to_string(count) +
+                                    " instances are left out, their matrices cannot be inverted");
   }
 
   void place_shape(const JsonRef& r, const JsonRef& e, uint32_t node, const Affine3d& world_from_node) {
@@ -216,8 +232,12 @@ class Placer {
     return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, world_from_node.origin};
   }
 
+  static constexpr uint64_t kMostInstances = 1 << 16;  // besides those that have bytes of their own
+
   GltfSource& source_;
+  const GltfBuffers& buffers_;
   Scene& scene_;
+  uint64_t instances_left_;
   std::vector<Light> lights_;
 };
 
@@ -230,7 +250,7 @@ void read_surroundings(const JsonRef& e, Scene& scene) {
 
 }  // namespace
 
-void read_scene(GltfSource& source, std::optional<size_t> chosen, Scene& scene) {
+void read_scene(GltfSource& source, const GltfBuffers& buffers, std::optional<size_t> chosen, Scene& scene) {
   for (const tinygltf::Node& node : source.model.nodes) scene.node_names.push_back(node.name);
   const Forest forest = read_forest(source);
   scene.geometry.parent_of_node = forest.parent;
@@ -238,7 +258,7 @@ void read_scene(GltfSource& source, std::optional<size_t> chosen, Scene& scene) 
   const std::vector<char> hidden = hidden_nodes(source, forest);
   std::vector<uint32_t> shown = forest.below(shown_roots(source, forest, chosen));
   std::sort(shown.begin(), shown.end());  // instances, cameras and lights come in the order of their nodes
-  Placer placer(source, scene);
+  Placer placer(source, buffers, scene);
   for (const uint32_t node : shown) placer.place(node, world[node], hidden[node]);
   if (chosen)
     if (const auto e = source.at("scenes", *chosen).extension("ALHAZEN_lights")) read_surroundings(*e, scene);

@@ -1,7 +1,9 @@
 // glTF scenes: the nodes that are shown, and the meshes, shapes, cameras and lights that they place.
 #pragma once
 
-#include "loaders/gltf_source.h"
+#include <optional>
+
+#include "loaders/gltf_accessor.h"
 
 namespace alhazen {
 
@@ -10,6 +12,6 @@ namespace alhazen {
 /// there is none, less what KHR_node_visibility hides and MSFT_lod's lesser levels; hidden cameras are there all the
 /// same. Throws LoadError for a node graph that is no forest, scene nodes that are no roots, matrices that are not
 /// affine, and shapes placed by a matrix that cannot be inverted.
-void read_scene(GltfSource& source, std::optional<size_t> chosen, Scene& scene);
+void read_scene(GltfSource& source, const GltfBuffers& buffers, std::optional<size_t> chosen, Scene& scene);
 
 }  // namespace alhazen

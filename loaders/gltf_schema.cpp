@@ -228,6 +228,7 @@ Check node() {
       object({{"KHR_lights_punctual", object({{"light", index_into(kLights), required}})},
               {"ALHAZEN_shapes", closed_object({{"shape", index_into("/extensions/ALHAZEN_shapes/shapes"), required},
                                                 {"material", index_into("/materials")}})},
+              {"EXT_mesh_gpu_instancing", object({{"attributes", map_of(index_into("/accessors")), required}})},
               {"KHR_node_visibility", object({{"visible", boolean()}})},
               {"MSFT_lod", object({{"ids", list_of(index_into("/nodes")), required}})}});
   return object({{"name", text()},

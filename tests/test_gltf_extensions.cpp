@@ -1,7 +1,10 @@
 // Extensions that choose, hide and stand in: variants, scenes, visibility, levels of detail, other image formats.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <functional>
+#include <limits>
 #include <regex>
 #include <sstream>
 
@@ -109,6 +112,72 @@ TEST(GltfLod, TheFinestLevelIsSeen) {
   for (int i = 0; i < 4; ++i) b.mesh({{"attributes", {{"POSITION", b.vec3(kTriangle)}}}});
   b.root["nodes"][1]["extensions"]["MSFT_lod"]["ids"] = {0, 3};
   EXPECT_EQ(seen(b), (std::vector<uint32_t>{1, 2}));
+}
+
+/// A triangle instanced by `attributes` on a node at (10, 0, 0).
+GltfBuilder instanced(const std::function<json(GltfBuilder&)>& attributes) {
+  GltfBuilder b;
+  b.mesh({{"attributes", {{"POSITION", b.vec3(kTriangle)}}}});
+  b.root["nodes"][0]["translation"] = {10, 0, 0};
+  b.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = attributes(b);
+  return b;
+}
+
+TEST(GpuInstancing, PlacesAMeshByTranslationRotationAndScale) {
+  const float half = std::sqrt(0.5f);
+  const GltfBuilder b = instanced([&](GltfBuilder& g) {
+    return json{{"TRANSLATION", g.vec3({0, 0, 0, 1, 2, 3})},
+                {"ROTATION", g.accessor(std::vector<float>{0, 0, 0, 1, 0, 0, half, half}, "VEC4", 5126, 2)},
+                {"SCALE", g.vec3({1, 1, 1, 2, 3, 4})}};
+  });
+  const Loaded loaded = load(b);
+  const auto& placed = loaded.scene().geometry.mesh_instances;
+  ASSERT_EQ(placed.size(), 2u);
+  EXPECT_EQ(placed[0].world_from_object.origin, (Vec3d{10, 0, 0}));
+  // A quarter turn about z after the scale: x goes to 2 y, y to -3 x.
+  const Vec3d p = transform_point(placed[1].world_from_object, Vec3d{1, 1, 1});
+  EXPECT_NEAR(p.x, 11 - 3, 1e-6);
+  EXPECT_NEAR(p.y, 2 + 2, 1e-6);
+  EXPECT_NEAR(p.z, 3 + 4, 1e-6);
+  EXPECT_EQ(placed[1].node, 0u);
+}
+
+TEST(GpuInstancing, RotationsMayBeNormalizedIntegers) {
+  for (const int component : {5120, 5122}) {
+    const GltfBuilder b = instanced([&](GltfBuilder& g) {
+      return json{{"ROTATION", component == 5120
+                                   ? g.accessor(std::vector<int8_t>{0, 0, 127, 0}, "VEC4", component, 1, true)
+                                   : g.accessor(std::vector<int16_t>{0, 0, 32767, 0}, "VEC4", component, 1, true)}};
+    });
+    const Loaded loaded = load(b);
+    const Affine3d m = loaded.scene().geometry.mesh_instances.at(0).world_from_object;
+    EXPECT_NEAR(m.x.x, -1, 1e-12);
+    EXPECT_NEAR(m.z.z, 1, 1e-12);
+  }
+}
+
+TEST(GpuInstancing, FaultsAreNamedAtTheirPlace) {
+  const std::string at = "/nodes/0/extensions/EXT_mesh_gpu_instancing";
+  EXPECT_EQ(error_of(instanced([](GltfBuilder& g) {
+                       return json{{"TRANSLATION", g.vec3({0, 0, 0, 1, 2, 3})}, {"SCALE", g.vec3({1, 1, 1})}};
+                     }).document()),
+            at + "/attributes/SCALE: expected an accessor of 2 elements as the others have, it has 1");
+  EXPECT_TRUE(error_of(instanced([](GltfBuilder& g) {
+                         return json{{"ROTATION", g.vec3({0, 0, 0})}};
+                       }).document())
+                  .starts_with(at + "/attributes/ROTATION: expected an accessor of 4 components"));
+  EXPECT_EQ(error_of(instanced([](GltfBuilder& g) {
+                       return json{{"SCALE", g.vec3({1, std::numeric_limits<float>::infinity(), 1})}};
+                     }).document()),
+            at + "/attributes/SCALE: expected finite numbers, the accessor holds others");
+  const auto zeros = [](GltfBuilder& g) {
+    return json{{"TRANSLATION", g.add("accessors", {{"type", "VEC3"}, {"componentType", 5126}, {"count", 1 << 20}})}};
+  };
+  EXPECT_TRUE(error_of(instanced(zeros).document()).ends_with("unfold to too many"));
+  const Loaded flat = load(instanced([](GltfBuilder& g) { return json{{"SCALE", g.vec3({1, 1, 1, 0, 0, 0})}}; }));
+  EXPECT_EQ(flat.scene().geometry.mesh_instances.size(), 1u);
+  ASSERT_EQ(flat.warnings.size(), 1u);
+  EXPECT_TRUE(flat.warnings[0].ends_with("1 of its 2 instances are left out, their matrices cannot be inverted"));
 }
 
 TEST(GltfTextures, TakeTheBestFormatThatIsDecoded) {
