@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "accel/embree.h"
+#include "accel/instance_geometry.h"
 #include "accel/shape_geometry.h"
 #include "core/error.h"
 
@@ -15,7 +16,7 @@ namespace {
 
 /// What a top-level geometry number stands for.
 struct TopEntry {
-  enum class Kind : uint8_t { none, baked_part, instance, shapes } kind = Kind::none;
+  enum class Kind : uint8_t { none, baked_part, instance, instances, shapes } kind = Kind::none;
   uint32_t object = kNone, part = 0;  // shapes: their group in place of the part
 };
 
@@ -24,6 +25,7 @@ struct TopEntry {
 struct AcceleratedScene::Impl {
   SurfaceFilter filter;
   std::vector<std::unique_ptr<ShapeGroup>> shape_groups;
+  std::vector<std::unique_ptr<InstanceGroup>> instance_groups;
   std::vector<TopEntry> top;
   std::vector<RTCScene> mesh_scenes;
   RTCDevice device = nullptr;
@@ -44,7 +46,10 @@ struct AcceleratedScene::Impl {
   };
   /// `u` holds a shape's face, which takes the place of the part.
   [[nodiscard]] Ids ids(uint32_t instance, uint32_t geometry, uint32_t primitive, float u) const {
-    if (instance != RTC_INVALID_GEOMETRY_ID) return {top[instance].object, geometry, primitive};
+    if (instance != RTC_INVALID_GEOMETRY_ID) {
+      const uint32_t object = instance & kInGroup ? instance & ~kInGroup : top[instance].object;
+      return {object, geometry, primitive};
+    }
     const TopEntry& entry = top[geometry];
     if (entry.kind == TopEntry::Kind::shapes)
       return {shape_groups[entry.part]->members[primitive].object, uint32_t(u), 0};
@@ -190,6 +195,12 @@ struct AcceleratedScene::Traversal {
     rtcAttachGeometryByID(impl.scene, g, id);
     rtcReleaseGeometry(g);
   }
+
+  static void attach_instances(Impl& impl, uint32_t id, const InstanceGroup& group) {
+    RTCGeometry g = new_instance_geometry(impl.device, group);
+    rtcAttachGeometryByID(impl.scene, g, id);
+    rtcReleaseGeometry(g);
+  }
 };
 
 AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter& filter, const BuildOptions& options)
@@ -226,9 +237,17 @@ AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter
         if (!mesh.parts[part].triangles.empty()) Traversal::attach_part(impl, shared, part, mesh.parts[part]);
       rtcCommitScene(shared);
     }
-    Traversal::attach_instance(impl, uint32_t(impl.top.size()), shared, instance.world_from_object);
-    impl.top.push_back({TopEntry::Kind::instance, object, 0});
     impl.has_instances = true;
+    const auto id = uint32_t(impl.top.size());
+    if (const uint32_t count = group_size(geometry, object); count >= kLeastInstanceGroup) {
+      impl.instance_groups.push_back(std::make_unique<InstanceGroup>(InstanceGroup{&instance, object, count, shared}));
+      Traversal::attach_instances(impl, id, *impl.instance_groups.back());
+      impl.top.push_back({TopEntry::Kind::instances, object, 0});
+      object += count - 1;
+      continue;
+    }
+    Traversal::attach_instance(impl, id, shared, instance.world_from_object);
+    impl.top.push_back({TopEntry::Kind::instance, object, 0});
   }
   impl.shape_groups = group_shapes(geometry, filter);
   for (uint32_t k = 0; k < impl.shape_groups.size(); ++k) {

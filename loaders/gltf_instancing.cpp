@@ -16,14 +16,12 @@ struct Attribute {
 };
 constexpr std::array<Attribute, 3> kAttributes{{{"TRANSLATION", 3}, {"ROTATION", 4}, {"SCALE", 3}}};
 
-/// The numbers of an attribute; none where there is no such.
-std::vector<float> values_of(const JsonRef& attributes, const char* name, const GltfBuffers& buffers) {
+/// The numbers of an attribute for some instances; none where there is no such.
+std::vector<float> values_of(const JsonRef& attributes, const char* name, const GltfBuffers& buffers,
+                             std::span<const uint32_t> instances) {
   const auto at = attributes.find(name);
   if (!at) return {};
-  const AccessorView& accessor = buffers.accessor(at->as<int>());
-  std::vector<uint32_t> all(accessor.count);
-  std::iota(all.begin(), all.end(), 0u);
-  std::vector<float> values = floats(accessor, all);
+  std::vector<float> values = floats(buffers.accessor(at->as<int>()), instances);
   if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
     at->fail("expected finite numbers, the accessor holds others");
   return values;
@@ -47,11 +45,13 @@ uint64_t instance_count(const JsonRef& r, const GltfBuffers& buffers) {
   return count;
 }
 
-std::vector<Affine3f> read_instances(const JsonRef& r, const GltfBuffers& buffers) {
+std::vector<Affine3f> read_instances(const JsonRef& r, const GltfBuffers& buffers, uint64_t first, uint64_t count) {
   const JsonRef attributes = r["attributes"];
-  const std::vector<float> t = values_of(attributes, "TRANSLATION", buffers),
-                           q = values_of(attributes, "ROTATION", buffers), s = values_of(attributes, "SCALE", buffers);
-  std::vector<Affine3f> maps(instance_count(r, buffers));
+  std::vector<uint32_t> instances(count);
+  std::iota(instances.begin(), instances.end(), uint32_t(first));
+  const auto values = [&](const char* name) { return values_of(attributes, name, buffers, instances); };
+  const std::vector<float> t = values("TRANSLATION"), q = values("ROTATION"), s = values("SCALE");
+  std::vector<Affine3f> maps(count);
   for (size_t i = 0; i < maps.size(); ++i) {
     std::array<double, 4> rotation{0, 0, 0, 1};
     if (!q.empty()) rotation = {q[4 * i], q[4 * i + 1], q[4 * i + 2], q[4 * i + 3]};

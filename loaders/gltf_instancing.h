@@ -12,8 +12,9 @@ namespace alhazen {
 /// another count than the others, or not the components that it needs.
 [[nodiscard]] uint64_t instance_count(const JsonRef& r, const GltfBuffers& buffers);
 
-/// The map from each instance to its node: translation x rotation x scale. Throws LoadError for numbers that are not
-/// finite.
-[[nodiscard]] std::vector<Affine3f> read_instances(const JsonRef& r, const GltfBuffers& buffers);
+/// The maps from instances [first, first + count) to their node: translation x rotation x scale. Throws LoadError for
+/// numbers that are not finite.
+[[nodiscard]] std::vector<Affine3f> read_instances(const JsonRef& r, const GltfBuffers& buffers, uint64_t first,
+                                                   uint64_t count);
 
 }  // namespace alhazen

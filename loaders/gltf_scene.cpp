@@ -192,13 +192,15 @@ class Placer {
     std::vector<MeshInstance>& placed = scene_.geometry.mesh_instances;
     placed.reserve(placed.size() + count);
     uint64_t left_out = 0;
-    for (const Affine3f& node_from_instance : read_instances(e, buffers_)) {
-      const Affine3d map = world_from_node * Affine3d(node_from_instance);
-      if (is_invertible(map))
-        placed.push_back({mesh, node, map});
-      else
-        ++left_out;
-    }
+    constexpr uint64_t kAtOnce = 4096;  // their numbers take little besides the instances themselves
+    for (uint64_t first = 0; first < count; first += kAtOnce)
+      for (const Affine3f& m : read_instances(e, buffers_, first, std::min(kAtOnce, count - first))) {
+        const Affine3d map = world_from_node * Affine3d(m);
+        if (is_invertible(map))
+          placed.push_back({mesh, node, map});
+        else
+          ++left_out;
+      }
     if (left_out > 0)
       source_.warn(e.pointer(), std::to_string(left_out) + " of its " + std::to_string(count) +
                                     " instances are left out, their matrices cannot be inverted");

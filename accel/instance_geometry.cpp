@@ -1,0 +1,146 @@
+#include "accel/instance_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace alhazen {
+namespace {
+
+const InstanceGroup& group_of(const void* data) { return *static_cast<const InstanceGroup*>(data); }
+
+/// A box around the instance, larger by what float traversal of it may err.
+void write_bounds(const RTCBoundsFunctionArguments* args) {
+  const InstanceGroup& group = group_of(args->geometryUserPtr);
+  RTCBounds box;
+  rtcGetSceneBounds(group.mesh, &box);
+  const Bounds3d object{{box.lower_x, box.lower_y, box.lower_z}, {box.upper_x, box.upper_y, box.upper_z}};
+  const Affine3d& m = group.first[args->primID].world_from_object;
+  const Bounds3d world = transform_bounds(m, object);
+  const Vec3d reach = max(abs(object.lower), abs(object.upper));
+  const Vec3d margin = (abs(m.x) * reach.x + abs(m.y) * reach.y + abs(m.z) * reach.z + abs(m.origin)) * 0x1p-20;
+  const Vec3f lower(world.lower - margin), upper(world.upper + margin);
+  args->bounds_o->lower_x = lower.x, args->bounds_o->upper_x = upper.x;
+  args->bounds_o->lower_y = lower.y, args->bounds_o->upper_y = upper.y;
+  args->bounds_o->lower_z = lower.z, args->bounds_o->upper_z = upper.z;
+}
+
+/// The lanes of a callback's packet in the space of the mesh; the direction is not made unit length, so t is shared.
+template <int width, class Ray>
+void enter(const Affine3f& object_from_world, RTCRayN* from, unsigned n, const int* active, int* valid, Ray& ray) {
+  for (unsigned i = 0; i < unsigned(width); ++i) valid[i] = i < n ? active[i] : 0;
+  for (unsigned i = 0; i < n; ++i) {
+    if (!valid[i]) continue;
+    const Vec3f o = transform_point(
+        object_from_world, Vec3f{RTCRayN_org_x(from, n, i), RTCRayN_org_y(from, n, i), RTCRayN_org_z(from, n, i)});
+    const Vec3f d = transform_vector(
+        object_from_world, Vec3f{RTCRayN_dir_x(from, n, i), RTCRayN_dir_y(from, n, i), RTCRayN_dir_z(from, n, i)});
+    ray.org_x[i] = o.x, ray.org_y[i] = o.y, ray.org_z[i] = o.z;
+    ray.dir_x[i] = d.x, ray.dir_y[i] = d.y, ray.dir_z[i] = d.z;
+    ray.tnear[i] = RTCRayN_tnear(from, n, i), ray.tfar[i] = RTCRayN_tfar(from, n, i);
+    ray.time[i] = RTCRayN_time(from, n, i), ray.mask[i] = RTCRayN_mask(from, n, i);
+    ray.id[i] = RTCRayN_id(from, n, i), ray.flags[i] = RTCRayN_flags(from, n, i);
+  }
+}
+
+/// Says in the context which instance is entered, until it is left.
+class Entered {
+ public:
+  Entered(embree::CallbackContext& context, uint32_t object) : context_(context) {
+    context_.instID[0] = kInGroup | object;
+  }
+  ~Entered() { context_.instID[0] = RTC_INVALID_GEOMETRY_ID; }
+  Entered(const Entered&) = delete;
+  Entered& operator=(const Entered&) = delete;
+
+ private:
+  embree::CallbackContext& context_;
+};
+
+template <class Arguments>
+embree::Query& query_of(const Arguments* args) {
+  return const_cast<embree::Query&>(embree::query_of<embree::Query>(args));
+}
+
+template <class Arguments>
+Affine3f object_from_world(const Arguments* args) {
+  return Affine3f(inverse(group_of(args->geometryUserPtr).first[args->primID].world_from_object));
+}
+
+template <int width>
+void intersect_packet(const RTCIntersectFunctionNArguments* args) {
+  const InstanceGroup& group = group_of(args->geometryUserPtr);
+  const unsigned n = args->N;
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, n);
+  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, n);
+  alignas(64) int valid[width];
+  alignas(64) typename embree::Packets<width>::RayHit packet;
+  enter<width>(object_from_world(args), rays, n, args->valid, valid, packet.ray);
+  std::fill_n(packet.hit.geomID, width, RTC_INVALID_GEOMETRY_ID);
+  std::fill_n(packet.hit.instID[0], width, RTC_INVALID_GEOMETRY_ID);
+  {
+    const Entered entered(*args->context, group.first_object + args->primID);
+    embree::intersect<width>(valid, group.mesh, query_of(args), packet);
+  }
+  for (unsigned i = 0; i < n; ++i) {
+    if (!valid[i]) continue;
+    if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
+      embree::reject(args, i);
+      continue;
+    }
+    RTCRayN_tfar(rays, n, i) = packet.ray.tfar[i];
+    RTCHitN_u(hits, n, i) = packet.hit.u[i], RTCHitN_v(hits, n, i) = packet.hit.v[i];
+    RTCHitN_geomID(hits, n, i) = packet.hit.geomID[i], RTCHitN_primID(hits, n, i) = packet.hit.primID[i];
+    RTCHitN_instID(hits, n, i, 0) = packet.hit.instID[0][i];
+    embree::confirm(args, i);
+  }
+}
+
+template <int width>
+void occlude_packet(const RTCOccludedFunctionNArguments* args) {
+  const InstanceGroup& group = group_of(args->geometryUserPtr);
+  alignas(64) int valid[width];
+  alignas(64) typename embree::Packets<width>::Ray packet;
+  enter<width>(object_from_world(args), args->ray, args->N, args->valid, valid, packet);
+  {
+    const Entered entered(*args->context, group.first_object + args->primID);
+    embree::occluded<width>(valid, group.mesh, query_of(args), packet);
+  }
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (!valid[i]) continue;
+    if (packet.tfar[i] < 0)
+      embree::accept(args, i);
+    else
+      embree::reject(args, i);
+  }
+}
+
+void intersect(const RTCIntersectFunctionNArguments* args) {
+  args->N <= 4 ? intersect_packet<4>(args) : args->N <= 8 ? intersect_packet<8>(args) : intersect_packet<16>(args);
+}
+
+void occlude(const RTCOccludedFunctionNArguments* args) {
+  args->N <= 4 ? occlude_packet<4>(args) : args->N <= 8 ? occlude_packet<8>(args) : occlude_packet<16>(args);
+}
+
+}  // namespace
+
+uint32_t group_size(const Geometry& geometry, uint32_t object) {
+  const auto begin = geometry.mesh_instances.begin() + ptrdiff_t(object);
+  const auto end = std::find_if(begin, geometry.mesh_instances.end(),
+                                [&](const MeshInstance& instance) { return instance.mesh != begin->mesh; });
+  return uint32_t(end - begin);
+}
+
+RTCGeometry new_instance_geometry(RTCDevice device, const InstanceGroup& group) {
+  RTCGeometry g = embree::new_geometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(g, group.count);
+  rtcSetGeometryUserData(g, const_cast<InstanceGroup*>(&group));
+  rtcSetGeometryBoundsFunction(g, write_bounds, nullptr);
+  rtcSetGeometryIntersectFunction(g, intersect);
+  rtcSetGeometryOccludedFunction(g, occlude);
+  rtcCommitGeometry(g);
+  return g;
+}
+
+}  // namespace alhazen

@@ -1,0 +1,29 @@
+// Many places of one mesh as one Embree user geometry. Embree's own instances take hundreds of bytes each; this takes
+// what the hierarchy over their boxes does, and reads their maps where the scene has them.
+#pragma once
+
+#include "accel/embree.h"
+#include "accel/geometry.h"
+
+namespace alhazen {
+
+/// From how many instances on this pays: below, Embree's own traverse a little faster.
+inline constexpr uint32_t kLeastInstanceGroup = 1024;
+
+/// Consecutive instances of one mesh. A hit in one has the mesh's geometry and primitive, and as its instance the
+/// object number with the highest bit set.
+struct InstanceGroup {
+  const MeshInstance* first;  // Geometry's, in place
+  uint32_t first_object, count;
+  RTCScene mesh;  // committed
+};
+
+inline constexpr uint32_t kInGroup = 0x80000000u;
+
+/// How many of the instances from `object` on are of the same mesh.
+[[nodiscard]] uint32_t group_size(const Geometry& geometry, uint32_t object);
+
+/// A committed user geometry over the group, which must outlive it.
+[[nodiscard]] RTCGeometry new_instance_geometry(RTCDevice device, const InstanceGroup& group);
+
+}  // namespace alhazen
