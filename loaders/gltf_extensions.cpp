@@ -44,7 +44,7 @@ constexpr KnownExtension kKnown[] = {
     {"KHR_materials_volume", ignored, "bodies are thin-walled and clear"},
     {"KHR_materials_volume_scatter", ignored, "bodies are thin-walled and clear"},
     {"KHR_mesh_quantization", supported, ""},
-    {"KHR_meshopt_compression", supported, "all modes and filters; version 0 of the vertex codec"},
+    {"KHR_meshopt_compression", supported, "all modes and filters"},
     {"KHR_node_hoverability", ignored, "nothing to see"},
     {"KHR_node_selectability", ignored, "nothing to see"},
     {"KHR_node_visibility", supported, "hidden cameras can be used"},

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
+
+#include "loaders/meshopt_vertices.h"
 
 namespace alhazen {
 namespace {
@@ -15,10 +18,17 @@ uint64_t shortest_stream(const std::string& mode, uint64_t count, uint64_t strid
   return mode == "ATTRIBUTES" ? count * stride / 1024 : mode == "TRIANGLES" ? count / 3 : count;
 }
 
-int decode(const std::string& mode, Bytes& out, size_t count, size_t stride, std::span<const uint8_t> stream) {
-  if (mode == "ATTRIBUTES") return meshopt_decodeVertexBuffer(out.data(), count, stride, stream.data(), stream.size());
-  if (mode == "TRIANGLES") return meshopt_decodeIndexBuffer(out.data(), count, stride, stream.data(), stream.size());
-  return meshopt_decodeIndexSequence(out.data(), count, stride, stream.data(), stream.size());
+/// Nothing for a stream that is malformed.
+std::optional<Bytes> decode(const std::string& mode, size_t count, size_t stride, std::span<const uint8_t> stream) {
+  if (mode == "ATTRIBUTES" && is_version_1(stream)) return decode_vertices_1(stream, count, stride);
+  Bytes out(count * stride);
+  const auto all = [&](auto decoder) { return decoder(out.data(), count, stride, stream.data(), stream.size()); };
+  using Decoder = int(void*, size_t, size_t, const unsigned char*, size_t);
+  const int error = mode == "ATTRIBUTES"  ? all(static_cast<Decoder*>(meshopt_decodeVertexBuffer))
+                    : mode == "TRIANGLES" ? all(static_cast<Decoder*>(meshopt_decodeIndexBuffer))
+                                          : all(static_cast<Decoder*>(meshopt_decodeIndexSequence));
+  if (error != 0) return std::nullopt;
+  return out;
 }
 
 /// KHR_meshopt_compression, appendix B, filter 4: Y, Co, Cg and alpha of one pixel, whose highest bit but alpha's own
@@ -71,12 +81,13 @@ uint64_t meshopt_size(const JsonRef& r, std::span<const uint8_t> stream) {
 Bytes decode_meshopt(const JsonRef& r, std::span<const uint8_t> stream) {
   const auto mode = r["mode"].as<std::string>();
   const auto count = r["count"].as<uint64_t>(), stride = r["byteStride"].as<uint64_t>();
-  Bytes out(meshopt_size(r, stream));
-  if (decode(mode, out, count, stride, stream) != 0)
+  (void)meshopt_size(r, stream);
+  auto out = decode(mode, count, stride, stream);
+  if (!out)
     r.fail("its bytes are no stream of " + std::to_string(count) + " " + mode + " elements of " +
            std::to_string(stride) + " bytes");
-  undo_filter(r.get("filter", std::string("NONE")), out, count, stride);
-  return out;
+  undo_filter(r.get("filter", std::string("NONE")), *out, count, stride);
+  return std::move(*out);
 }
 
 }  // namespace alhazen

@@ -52,12 +52,13 @@ Bytes read_image(GltfSource& source, const GltfBuffers& buffers, const JsonRef& 
   return bytes ? std::move(*bytes) : Bytes{};
 }
 
+/// Once for all KTX 2 textures.
 void warn_of_missing_image(GltfSource& source, const JsonRef& texture) {
-  const bool basisu = texture.extension("KHR_texture_basisu").has_value();
-  source.warn(texture.pointer(), basisu
-                                     ? "left out: its image is KTX 2, which this build cannot decode without libktx, "
-                                       "and it has no other"
-                                     : "left out: it has no image that can be decoded here");
+  if (texture.extension("KHR_texture_basisu"))
+    source.warn("/textures",
+                "those of KHR_texture_basisu alone are left out: their KTX 2 images need a build with libktx");
+  else
+    source.warn(texture.pointer(), "left out: it has no image that can be decoded here");
 }
 
 }  // namespace
