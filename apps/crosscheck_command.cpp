@@ -9,11 +9,13 @@
 #include <fstream>
 #include <memory>
 
+#include "apps/crosscheck_map.h"
 #include "apps/crosscheck_target.h"
 #include "apps/interruption.h"
 #include "apps/render_arguments.h"
 #include "core/error.h"
 #include "crosscheck/report.h"
+#include "loaders/image_file.h"
 
 namespace alhazen {
 namespace {
@@ -54,6 +56,7 @@ struct Session {
   RecordFile records;
   Faults faults;
   RelationReport relations;
+  std::optional<CrosscheckMap> map;
   Tally total;
 
   [[nodiscard]] std::string source(Population population) const {
@@ -62,6 +65,7 @@ struct Session {
 
   void note(const std::string& family, const Case& c, uint64_t& recorded) {
     const Options& options = arguments.options;
+    if (map) map->add(family, c);
     if (options.only) std::printf("%s\n", record(family, c, options, source(c.population)).c_str());
     if (!is_disagreement(c)) return;
     faults.add(family, c, reproduction(family, c.population, c.index, options.seed, source(c.population)));
@@ -94,15 +98,30 @@ void check_picture(Session& session, PictureTally& picture) {
   });
 }
 
+/// Of the picture where there is one, else of the families. Throws WriteError for a file that cannot be written.
+CrosscheckMap new_map(const std::string& file, const CrosscheckTarget& target) {
+  check_writable(file, 1, 1);
+  const bool picture = target.picture != nullptr;
+  return {picture ? target.view.width : 0, picture ? target.view.height : 0, target.families.size()};
+}
+
+/// Whole or not at all.
+void write_map(const std::string& file, const CrosscheckMap& map) {
+  write_image(file, map.image(), {}, {{"Software", "Alhazen"}});
+  if (!map.has_text())
+    std::printf("The map has no legend, as there is no font to write it with:\n%s", map.legend().c_str());
+}
+
 int run_crosscheck(CrosscheckArguments& arguments) {
   Options& options = arguments.options;
   options.t_tolerance_a = arguments.t_ulp;
   const int threads = arguments.threads > 0 ? arguments.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
   const CrosscheckTarget target = crosscheck_target(arguments);
-  Session session{arguments, target, RecordFile(arguments.json), {}, {}, {}};
+  Session session{arguments, target, RecordFile(arguments.json), {}, {}, {}, {}};
   if (target.plugin) options.intersector = &target.plugin->intersector();
   options.rays = uint64_t(std::ceil(arguments.rays / double(std::max<size_t>(1, target.families.size()))));
+  if (!arguments.map.empty()) session.map = new_map(arguments.map, target);
   stop_on_signal(g_stop);
 
   std::printf("%s", table_head().c_str());
@@ -116,6 +135,7 @@ int run_crosscheck(CrosscheckArguments& arguments) {
   std::printf("%s", session.faults.text().c_str());
   if (picture.pixels > 0) std::printf("%s", picture_text(picture, session.source(Population::camera)).c_str());
   session.records.close();
+  if (session.map) write_map(arguments.map, *session.map);
   if (caught_signal() != 0) return 128 + caught_signal();
   return session.total.failures() > 0 ? kIntersectorWrong : int(ExitStatus::done);
 }
@@ -158,12 +178,18 @@ Command add_crosscheck_command(CLI::App& program) {
       ->type_name("N")
       ->check(CLI::Range(0, 4096).description(""))
       ->capture_default_str();
+  command
+      ->add_option("--scene", arguments->choice.scene,
+                   "Index or name of one of the file's scenes; by default its own choice")
+      ->type_name("INDEX|NAME");
   add_size_option(*command, arguments->picture);
   command
       ->add_option("--camera", arguments->camera,
                    "Whose rays: index in the file's cameras, or a name; by default as for render")
       ->type_name("INDEX|NAME");
   command->add_option("--json", arguments->json, "Disagreements, a JSON object a line")->type_name("FILE");
+  command->add_option("--map", arguments->map, "A picture of where they disagree, and who is right")
+      ->type_name("FILE.png");
   command
       ->add_option("--intersector", arguments->intersector, "A shared library to check instead of the built-in shapes")
       ->type_name("FILE.so");

@@ -90,8 +90,9 @@ void add_picture(const CrosscheckArguments& arguments, CrosscheckTarget& target)
 CrosscheckTarget scene_target(const CrosscheckArguments& arguments) {
   CrosscheckTarget target;
   target.source = " " + shell_word(arguments.scene);
+  if (!arguments.choice.scene.empty()) target.source += " --scene " + shell_word(arguments.choice.scene);
   const auto warn = [](const std::string& text) { std::fprintf(stderr, "warning: %s\n", text.c_str()); };
-  target.scene = std::make_unique<Scene>(load_gltf(arguments.scene, warn).scene);
+  target.scene = std::make_unique<Scene>(load_gltf(arguments.scene, warn, arguments.choice).scene);
   Geometry& geometry = target.scene->geometry;
   bake_single_instances(geometry);
   target.populations = populations_named(arguments.population, true);

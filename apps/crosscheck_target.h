@@ -13,7 +13,9 @@
 namespace alhazen {
 
 struct CrosscheckArguments {
-  std::string scene, shape = "all", population = "all", camera, json, map, intersector;
+  std::string scene;  // a file
+  SceneChoice choice;
+  std::string shape = "all", population = "all", camera, json, map, intersector;
   crosscheck::Options options;
   RenderOptions picture;  // its size alone
   int threads = 0;

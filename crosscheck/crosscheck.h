@@ -37,6 +37,7 @@ struct Case {
   // Scenes, in words: what each party hits. Filled where they disagree or one ray is asked about.
   std::string a_surface = {}, b_surface = {}, true_surface = {};
   uint32_t object = kNone;  // scenes: what is truly hit
+  double facing = 0;        // scenes: how squarely, the cosine to its normal
 };
 
 /// What B is measured by.

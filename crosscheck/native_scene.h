@@ -26,11 +26,16 @@ class NativeScene {
   explicit NativeScene(const SceneBoxes& boxes);
   ~NativeScene();
 
-  /// The object in floats, none where Embree cannot hold it. Of a mesh: a triangle somewhere, under its map.
-  [[nodiscard]] const std::optional<NativeSubject>& subject(uint32_t object) const { return subjects_[object]; }
+  /// An object in floats.
+  struct Object {
+    Affine3d world_from_object, object_from_world;
+    std::unique_ptr<Subject> shape;  // null: a mesh
+  };
+  /// None where Embree cannot hold it.
+  [[nodiscard]] const std::optional<Object>& object(uint32_t number) const { return objects_[number]; }
 
-  /// Whether any object is another one in floats.
-  [[nodiscard]] bool is_rounded() const;
+  /// Whether any object is another one in floats, or none.
+  [[nodiscard]] bool is_rounded() const { return rounded_; }
 
   /// Whether the ray may be asked about the object: it is there, and within what its geometry is made for.
   [[nodiscard]] bool answers_for(uint32_t object, const Rayf& ray_world) const;
@@ -39,8 +44,11 @@ class NativeScene {
   void answer(std::span<const Rayf> rays_world, std::vector<SceneAnswer>& answers) const;
 
  private:
+  void add_object(const SceneBoxes& boxes, uint32_t number);
+
   struct Impl;
-  std::vector<std::optional<NativeSubject>> subjects_;  // by object
+  std::vector<std::optional<Object>> objects_;
+  bool rounded_ = false;
   std::unique_ptr<Impl> impl_;
 };
 

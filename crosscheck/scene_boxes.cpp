@@ -31,18 +31,13 @@ WideLine wide_line(const ObjectLine<double>& line, const Bounds3d& box, double m
   return {line.origin, line.direction, margin};
 }
 
-const Affine3d& world_from_object(const Geometry& geometry, uint32_t object) {
-  return is_shape(geometry, object) ? shape_instance(geometry, object).world_from_object
-                                    : geometry.mesh_instances[object].world_from_object;
-}
-
 }  // namespace
 
 SceneBoxes::SceneBoxes(const Geometry& geometry) : geometry_(&geometry) {
   for (const Mesh& mesh : geometry.meshes) meshes_.push_back(mesh_boxes(mesh));
   std::vector<Bounds3d> boxes;
   for (uint32_t object = 0; object < geometry.mesh_instances.size() + geometry.shape_instances.size(); ++object) {
-    const Affine3d& m = world_from_object(geometry, object);
+    const Affine3d& m = world_from_object(object);
     Bounds3d own;
     if (is_shape(geometry, object))
       own =
@@ -95,8 +90,13 @@ void SceneBoxes::visit_mesh(uint32_t object, const Rayf& ray, const double& t_li
                     });
 }
 
+const Affine3d& SceneBoxes::world_from_object(uint32_t object) const {
+  return is_shape(*geometry_, object) ? shape_instance(*geometry_, object).world_from_object
+                                      : geometry_->mesh_instances[object].world_from_object;
+}
+
 Subject SceneBoxes::subject(const SurfaceId& id) const {
-  const Affine3d& m = world_from_object(*geometry_, id.object);
+  const Affine3d& m = world_from_object(id.object);
   if (!is_shape(*geometry_, id.object)) {
     const Mesh& mesh = geometry_->meshes[geometry_->mesh_instances[id.object].mesh];
     return {.surface = triangle_of(mesh.parts[id.part], id.triangle), .world_from_object = m};

@@ -120,6 +120,13 @@ struct SceneCheck::Impl {
     return nearest;
   }
 
+  [[nodiscard]] double facing(const SceneTruth& truth, const Rayf& ray) const {
+    if (!truth.nearest.hit) return 0;
+    const Affine3d& m = boxes.subject(truth.first()).world_from_object;
+    const Vec3d n_world = normalize(transform_normal(m, truth.nearest.normal_object));
+    return std::abs(dot(n_world, normalize(Vec3d(ray.direction))));
+  }
+
   [[nodiscard]] std::string label(const SurfaceId& id) const {
     std::string text = node_label(node_names, node_of(geometry, id.object));
     if (is_shape(geometry, id.object)) return text;
@@ -173,7 +180,7 @@ class CellCheck {
   void decide(size_t k, Case& c) {
     const SceneTruth truth = scene_.judge.closest(c.ray);
     const SceneAnswer &a = nearer(shapes_[k], triangles_[k]), &b = nearer(native_shapes_[k], native_triangles_[k]);
-    c.a = a.answer, c.truth = truth.nearest, c.object = truth.first().object;
+    c.a = a.answer, c.truth = truth.nearest, c.object = truth.first().object, c.facing = scene_.facing(truth, c.ray);
     if (c.truth.hit && !std::isfinite(c.truth.t)) return;  // further than floats reach
     c.a_fault = fault_in_scene(a, truth, options_.t_tolerance_a);
     ask_second_opinion(b, truth, c);

@@ -39,10 +39,13 @@ SceneJudge::SceneJudge(const SceneBoxes& boxes, const NativeScene* native) : box
 }
 
 SceneJudge::Object SceneJudge::object_of(uint32_t number) const {
-  if (native_ && !native_->subject(number)) return {};
-  const Subject subject = native_ ? native_->subject(number)->subject : boxes_->subject({number, 0, 0});
   const bool shape = is_shape(boxes_->geometry(), number);
-  return {subject.world_from_object, shape ? std::make_unique<Judge>(subject) : nullptr};
+  if (!native_)
+    return {boxes_->world_from_object(number),
+            shape ? std::make_unique<Judge>(boxes_->subject({number, 0, 0})) : nullptr};
+  const auto& held = native_->object(number);
+  if (!held) return {};
+  return {held->world_from_object, shape ? std::make_unique<Judge>(*held->shape) : nullptr};
 }
 
 Judgement SceneJudge::judge(const SurfaceId& id, const Triangle* triangle, const Rayf& ray) const {

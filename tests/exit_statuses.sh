@@ -23,6 +23,15 @@ expect 0 render "$scene" -o "$work/s.exr" --size 16x9 --integrator signature --q
 expect 0 info "$scene"
 expect 0 --version
 expect 0 render --help
+expect 0 crosscheck "$scene" --rays 100 --size 32x18 --map "$work/map.png" --json "$work/map.jsonl"
+expect 0 crosscheck --shape sphere --rays 100 --map "$work/map.png"
+expect 2 crosscheck "$scene" --shape nothing
+expect 2 crosscheck "$scene" --camera nobody
+expect 2 crosscheck --population camera
+expect 3 crosscheck "$work/truncated.gltf"
+expect 3 crosscheck "$work/absent.gltf"
+expect 4 crosscheck "$scene" --map "$work/absent/map.png"
+expect 4 crosscheck "$scene" --map "$work/map.unheard"
 expect 2 render "$scene" --no-such-option
 expect 2 render "$scene" -o "$work/a.exr" --camera nobody
 expect 2 render "$scene" -o "$work/a.exr" --integrator whited

@@ -169,6 +169,19 @@ TEST(SceneJudge, LeavesOutNothingThatARayMeets) {
   EXPECT_GT(hits, 100);
 }
 
+TEST(SceneCheck, ASceneOfNothingHasNothingWrong) {
+  Geometry geometry;
+  geometry.meshes = {{"empty", {TriangleMesh{}}}, {"void", {}}};
+  geometry.mesh_instances = {{0, 0, {}}, {1, 1, {}}};
+  EXPECT_TRUE(scene_families(geometry, kNames, "all").empty());
+  const SceneCheck scene(geometry, kNames);
+  PictureTally picture;
+  const View view{8, 8, [](int x, int y) { return Rayf{{float(x), float(y), 9}, {0, 0, -1}}; }};
+  const Tally tally = scene.check(view, {}, {}, picture);
+  EXPECT_EQ(tally.of(Verdict::agree), 64u);
+  EXPECT_EQ(tally.hits, 0u);
+}
+
 View view_of(const Camera& camera, int width, int height) {
   return {width, height, [=](int x, int y) { return camera_ray(camera, width, height, x + 0.5, y + 0.5); }};
 }
