@@ -1,21 +1,13 @@
 #include "loaders/gltf_material.h"
 
 #include <array>
-#include <cmath>
+
+#include "loaders/gltf_layers.h"
 
 namespace alhazen {
 namespace {
 
 // ---- Textures ----
-
-/// KHR_texture_transform: translation * rotation * scale; angles turn from v to u, for v points down.
-void set_transform(const JsonRef& r, TextureUse& use) {
-  const auto offset = r.get("offset", std::array{0.0, 0.0}), scale = r.get("scale", std::array{1.0, 1.0});
-  const double angle = r.get("rotation", 0.0), c = std::cos(angle), s = std::sin(angle);
-  use.uv_set = r.get("texCoord", use.uv_set);
-  use.xx = float(c * scale[0]), use.xy = float(s * scale[1]), use.x0 = float(offset[0]);
-  use.yx = float(-s * scale[0]), use.yy = float(c * scale[1]), use.y0 = float(offset[1]);
-}
 
 Rgb rgb(const std::vector<double>& c) { return {float(c[0]), float(c[1]), float(c[2])}; }
 
@@ -41,13 +33,8 @@ class MaterialReader {
  private:
   /// The textureInfo `key` of `owner`; unused where there is none.
   TextureUse texture_use(const JsonRef& owner, const char* key) {
-    TextureUse use;
-    if (const auto info = owner.find(key)) {
-      use.texture = (*info)["index"].as<uint32_t>();
-      all_.uses_texture[use.texture] = 1;
-      use.uv_set = info->get("texCoord", 0u);
-      if (const auto transform = info->extension("KHR_texture_transform")) set_transform(*transform, use);
-    }
+    const TextureUse use = alhazen::texture_use(owner, key);
+    if (use) all_.uses_texture[use.texture] = 1;
     return use;
   }
 
@@ -83,6 +70,8 @@ class MaterialReader {
       m.transmission = e->get("transmissionFactor", m.transmission);
       m.transmission_texture = texture_use(*e, "transmissionTexture");
     }
+    read_layers(
+        r, [this](const JsonRef& owner, const char* key) { return texture_use(owner, key); }, m);
     if (const auto e = r.extension("KHR_materials_specular")) {
       m.specular = e->get("specularFactor", m.specular);
       m.specular_texture = texture_use(*e, "specularTexture");
@@ -121,6 +110,8 @@ class MaterialReader {
     p.transmission = r.get("transmissionFactor", p.transmission);
     p.ior = r.get("ior", p.ior);
     p.fresnel = r.get("fresnel", p.fresnel);
+    p.takes_part = r.has("priority");
+    p.priority = r.get("priority", p.priority);
   }
 
   const GltfSource& source_;

@@ -8,6 +8,7 @@
 
 #include "loaders/gltf_draco.h"
 #include "loaders/gltf_polygons.h"
+#include "loaders/gltf_layers.h"
 #include "loaders/in_parallel.h"
 #include "loaders/tangents.h"
 
@@ -271,9 +272,9 @@ void complete_tangents(std::vector<Mesh>& meshes, const std::vector<Material>& m
   std::vector<TriangleMesh*> lacking;
   for (Mesh& mesh : meshes)
     for (TriangleMesh& part : mesh.parts)
-      if (part.tangents.empty() && materials[part.material].normal_texture) lacking.push_back(&part);
+      if (part.tangents.empty() && tangent_uv_set(materials[part.material])) lacking.push_back(&part);
   for_each_in_parallel(lacking.size(), [&](size_t i) {
-    generate_tangents(*lacking[i], materials[lacking[i]->material].normal_texture.uv_set);
+    generate_tangents(*lacking[i], *tangent_uv_set(materials[lacking[i]->material]));
   });
 }
 

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "accel/geometry.h"
+#include "loaders/gltf_layers.h"
 #include "loaders/gltf_shapes.h"
 #include "loaders/json_check.h"
 
@@ -120,6 +121,7 @@ Check phong() {
                         {"transmissionFactor", color()},
                         {"ior", number(1)},
                         {"fresnel", boolean()},
+                        {"priority", integer(0, 255)},
                         {"ambientTexture", texture_info()},
                         {"diffuseTexture", texture_info()}});
 }
@@ -128,21 +130,24 @@ Check material_extensions() {
   const Check zero_or_from_one = both(number(0), [](const JsonRef& r) {
     if (r.as<double>() > 0 && r.as<double>() < 1) r.expected("0 or a number >= 1");
   });
-  return object({{"KHR_materials_unlit", object({})},
-                 {"KHR_materials_emissive_strength", object({{"emissiveStrength", number(0)}})},
-                 {"KHR_materials_ior", object({{"ior", zero_or_from_one}})},
-                 {"KHR_materials_transmission",
-                  object({{"transmissionFactor", number(0, 1)}, {"transmissionTexture", texture_info()}})},
-                 {"KHR_materials_specular", object({{"specularFactor", number(0, 1)},
-                                                    {"specularTexture", texture_info()},
-                                                    {"specularColorFactor", color()},
-                                                    {"specularColorTexture", texture_info()}})},
-                 {"KHR_materials_pbrSpecularGlossiness", object({{"diffuseFactor", numbers(4, 0, 1)},
-                                                                 {"diffuseTexture", texture_info()},
-                                                                 {"specularFactor", numbers(3, 0, 1)},
-                                                                 {"glossinessFactor", number(0, 1)},
-                                                                 {"specularGlossinessTexture", texture_info()}})},
-                 {"ALHAZEN_materials_phong", phong()}});
+  std::vector<Property> all = layer_properties(texture_info);
+  all.insert(all.end(),
+             {{"KHR_materials_unlit", object({})},
+              {"KHR_materials_emissive_strength", object({{"emissiveStrength", number(0)}})},
+              {"KHR_materials_ior", object({{"ior", zero_or_from_one}})},
+              {"KHR_materials_transmission",
+               object({{"transmissionFactor", number(0, 1)}, {"transmissionTexture", texture_info()}})},
+              {"KHR_materials_specular", object({{"specularFactor", number(0, 1)},
+                                                 {"specularTexture", texture_info()},
+                                                 {"specularColorFactor", color()},
+                                                 {"specularColorTexture", texture_info()}})},
+              {"KHR_materials_pbrSpecularGlossiness", object({{"diffuseFactor", numbers(4, 0, 1)},
+                                                              {"diffuseTexture", texture_info()},
+                                                              {"specularFactor", numbers(3, 0, 1)},
+                                                              {"glossinessFactor", number(0, 1)},
+                                                              {"specularGlossinessTexture", texture_info()}})},
+              {"ALHAZEN_materials_phong", phong()}});
+  return object(std::move(all));
 }
 
 Check material() {

@@ -39,6 +39,13 @@ bool has_texels(const TextureTable& table, const TextureUse& use) {
   return image < table.images->size() && (*table.images)[image].width > 0;
 }
 
+Rgb half_thickness_transmittance(const Volume& volume, const TextureTable& table, const SurfaceInputs& inputs) {
+  const float texel = sample(table, volume.thickness_texture, ColorSpace::linear, inputs.uvs, inputs.uv_count).rgb.g;
+  const Rgb sigma = attenuation_per_metre(volume);
+  const float distance = volume.thickness * texel / 2;
+  return {std::exp(-sigma.r * distance), std::exp(-sigma.g * distance), std::exp(-sigma.b * distance)};
+}
+
 }  // namespace
 
 float coverage(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept {
@@ -57,6 +64,7 @@ Rgb straight_transmittance(const Material& material, const TextureTable& table, 
     const float texel =
         sample(table, material.transmission_texture, ColorSpace::linear, inputs.uvs, inputs.uv_count).rgb.r;
     t = base.rgb * std::clamp(material.transmission * texel, 0.0f, 1.0f);
+    if (material.volume.is_body()) t *= half_thickness_transmittance(material.volume, table, inputs);
   }
   return lerp(Rgb{1.0f}, t, coverage_of_alpha(material, base.a));
 }
@@ -74,12 +82,29 @@ Rgb emission(const Material& material, const TextureTable& table, const SurfaceI
          sample(table, material.emissive_texture, ColorSpace::srgb, inputs.uvs, inputs.uv_count).rgb;
 }
 
-Vec3f tangent_space_normal(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept {
+Vec3f tangent_space_normal(const TextureUse& texture, float scale, const TextureTable& table,
+                           const SurfaceInputs& inputs) noexcept {
   constexpr Vec3f kUp{0, 0, 1};
-  if (!has_texels(table, material.normal_texture)) return kUp;
-  const Rgb texel = sample(table, material.normal_texture, ColorSpace::linear, inputs.uvs, inputs.uv_count).rgb;
-  const Vec3f n{(2 * texel.r - 1) * material.normal_scale, (2 * texel.g - 1) * material.normal_scale, 2 * texel.b - 1};
+  if (!has_texels(table, texture)) return kUp;
+  const Rgb texel = sample(table, texture, ColorSpace::linear, inputs.uvs, inputs.uv_count).rgb;
+  const Vec3f n{(2 * texel.r - 1) * scale, (2 * texel.g - 1) * scale, 2 * texel.b - 1};
   return n.z > 0 && std::isfinite(dot(n, n)) ? normalize(n) : kUp;
+}
+
+float anisotropy_angle(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept {
+  const Anisotropy& a = material.anisotropy;
+  if (!has_texels(table, a.texture)) return a.rotation;
+  const Rgb texel = sample(table, a.texture, ColorSpace::linear, inputs.uvs, inputs.uv_count).rgb;
+  return a.rotation + std::atan2(2 * texel.g - 1, 2 * texel.r - 1);
+}
+
+Rgb attenuation_per_metre(const Volume& volume) noexcept {
+  if (!volume.is_body() || !(volume.attenuation_distance < std::numeric_limits<float>::infinity())) return {};
+  const auto by_metre = [&](float c) {
+    return -std::log(std::clamp(c, 1e-6f, 1.0f)) / std::max(volume.attenuation_distance, 1e-12f);
+  };
+  const Rgb& c = volume.attenuation_color;
+  return {by_metre(c.r), by_metre(c.g), by_metre(c.b)};
 }
 
 }  // namespace alhazen

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "core/opacity.h"
@@ -20,7 +21,56 @@ struct PhongParameters {
   Rgb reflection{0.0f}, transmission{0.0f};
   float ior = 1.5f;
   bool fresnel = false;
+  bool takes_part = false;  // in the rules of overlapping bodies: `priority` is given
+  int priority = 0;
   TextureUse ambient_texture, diffuse_texture;
+};
+
+// The layers and lobes of KHR_materials_*: every default is that of the extension where it is absent.
+
+struct Clearcoat {
+  float factor = 0, roughness = 0;
+  TextureUse texture;            // linear: R
+  TextureUse roughness_texture;  // linear: G
+  TextureUse normal_texture;     // linear, tangent space; without one the coat has the surface's own normal
+  float normal_scale = 1;
+};
+
+struct Sheen {
+  Rgb color{0.0f};
+  TextureUse color_texture;  // sRGB
+  float roughness = 0;
+  TextureUse roughness_texture;  // linear: A
+};
+
+struct Anisotropy {
+  float strength = 0, rotation = 0;  // rotation: radians from the tangent towards the bitangent
+  TextureUse texture;                // linear: RG direction, B strength
+};
+
+struct Iridescence {
+  float factor = 0, ior = 1.3f;
+  TextureUse texture;  // linear: R
+  float thickness_min_nm = 100, thickness_max_nm = 400;
+  TextureUse thickness_texture;  // linear: G; without one the film has its largest thickness
+};
+
+struct DiffuseTransmission {
+  float factor = 0;
+  TextureUse texture;  // linear: A
+  Rgb color{1.0f};
+  TextureUse color_texture;  // sRGB
+};
+
+/// What is inside of a body; without thickness a surface is a thin wall with nothing behind it.
+struct Volume {
+  float thickness = 0;           // metres in the mesh's space: an estimate, for shadows
+  TextureUse thickness_texture;  // linear: G
+  float attenuation_distance = std::numeric_limits<float>::infinity();  // metres
+  Rgb attenuation_color{1.0f};  // what is left of white light after that distance
+  float dispersion = 0;         // KHR_materials_dispersion: 20 over the Abbe number
+
+  [[nodiscard]] bool is_body() const { return thickness > 0; }
 };
 
 /// A glTF material. Factors are linear; every default is the specification's.
@@ -49,6 +99,12 @@ struct Material {
   TextureUse specular_color_texture;  // sRGB
   float transmission = 0;             // KHR_materials_transmission
   TextureUse transmission_texture;    // linear: R
+  Clearcoat clearcoat;
+  Sheen sheen;
+  Anisotropy anisotropy;
+  Iridescence iridescence;
+  DiffuseTransmission diffuse_transmission;
+  Volume volume;
 
   PhongParameters phong;  // read where model is phong
 };
@@ -65,7 +121,8 @@ struct SurfaceInputs {
 [[nodiscard]] float coverage(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept;
 
 /// The share of light that passes straight through the surface: 1 in a hole of MASK; (1 - a) + a t for BLEND; else t,
-/// where t is Phong's transmissionFactor, or glTF's transmission x base colour.
+/// where t is Phong's transmissionFactor, or glTF's transmission x base colour; into or out of a body also what half of
+/// its thickness lets through.
 [[nodiscard]] Rgb straight_transmittance(const Material& material, const TextureTable& table,
                                          const SurfaceInputs& inputs) noexcept;
 
@@ -75,9 +132,16 @@ struct SurfaceInputs {
 /// The light that a surface sends out by itself.
 [[nodiscard]] Rgb emission(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept;
 
-/// The normal texture's direction in tangent space (x along the tangent, z along the normal), unit length, scaled by
-/// normal_scale; (0, 0, 1) without a texture or where it decodes to nothing usable.
-[[nodiscard]] Vec3f tangent_space_normal(const Material& material, const TextureTable& table,
+/// A normal texture's direction in tangent space (x along the tangent, z along the normal), unit length, x and y
+/// scaled; (0, 0, 1) without a texture or where it decodes to nothing usable.
+[[nodiscard]] Vec3f tangent_space_normal(const TextureUse& texture, float scale, const TextureTable& table,
                                          const SurfaceInputs& inputs) noexcept;
+
+/// Where anisotropic highlights are drawn out: the angle in radians from the tangent towards the bitangent.
+[[nodiscard]] float anisotropy_angle(const Material& material, const TextureTable& table,
+                                     const SurfaceInputs& inputs) noexcept;
+
+/// How a body dims light, by metre: -ln(colour) / distance; 0 where it does not.
+[[nodiscard]] Rgb attenuation_per_metre(const Volume& volume) noexcept;
 
 }  // namespace alhazen

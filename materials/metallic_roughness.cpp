@@ -3,80 +3,154 @@
 #include <numbers>
 
 #include "materials/fresnel.h"
+#include "materials/thin_film.h"
 
 namespace alhazen {
 namespace {
 
 constexpr float kInvPi = std::numbers::inv_pi_v<float>;
+constexpr float kCoatF0 = 0.04f;  // index of refraction 1.5
 
 float unit(float x) { return x > 0 ? std::min(x, 1.0f) : 0.0f; }  // NaN becomes 0
 
+Rgb with_film(const MetallicRoughnessBsdf& bsdf, const Rgb& bare, const Rgb& f0, float cos_theta) {
+  if (!(bsdf.iridescence > 0)) return bare;
+  const Rgb film = thin_film_fresnel(unit(cos_theta), bsdf.film_ior, bsdf.film_thickness_nm, f0);
+  return lerp(bare, film, bsdf.iridescence);
+}
+
 Rgb dielectric_fresnel(const MetallicRoughnessBsdf& bsdf, float cos_theta) {
-  return fresnel_schlick(bsdf.dielectric_f0, bsdf.dielectric_f90, cos_theta);
+  const Rgb bare = fresnel_schlick(bsdf.dielectric_f0, bsdf.dielectric_f90, cos_theta);
+  return with_film(bsdf, bare, bsdf.dielectric_f0, cos_theta);
 }
 
 Rgb metal_fresnel(const MetallicRoughnessBsdf& bsdf, float cos_theta) {
-  return fresnel_schlick(bsdf.base_color, 1, cos_theta);
+  return with_film(bsdf, fresnel_schlick(bsdf.base_color, 1, cos_theta), bsdf.base_color, cos_theta);
+}
+
+Rgb base_light(const MetallicRoughnessBsdf& bsdf, const LayerFrames& frames, const Vec3f& s, const Vec3f& b,
+               const Vec3f& h) {
+  const float ns = dot(frames.base.n, s), bh = dot(b, h);
+  const float specular = ggx(alpha_of(bsdf.roughness, bsdf.anisotropy), frames.base, s, b, h);
+  const Rgb fresnel = dielectric_fresnel(bsdf, bh);
+  const Rgb diffuse = bsdf.base_color * (kInvPi * (1 - bsdf.transmission) * (1 - bsdf.diffuse_transmission));
+  const Rgb dielectric = diffuse * (1 - max_component(fresnel)) + fresnel * specular;
+  const Rgb metal = bsdf.metallic > 0 ? metal_fresnel(bsdf, bh) * specular : Rgb{};
+  return lerp(dielectric, metal, bsdf.metallic) * ns;
+}
+
+/// Of light from behind: there is no half vector to reflect about, so the view's angle says what the surface keeps.
+Rgb light_from_behind(const MetallicRoughnessBsdf& bsdf, const LayerFrames& frames, const Vec3f& s, const Vec3f& b) {
+  const float share = bsdf.diffuse_transmission * (1 - bsdf.transmission) * (1 - bsdf.metallic);
+  if (!(share > 0)) return {};
+  const float kept = max_component(dielectric_fresnel(bsdf, std::max(0.0f, dot(frames.base.n, b))));
+  return bsdf.diffuse_transmission_color *
+         (share * (1 - kept) * kInvPi * -dot(frames.base.n, s) * layers_transmittance(bsdf, frames, b));
+}
+
+/// What sheen leaves of the layers below it, for light to or from a direction.
+float sheen_transmittance(const MetallicRoughnessBsdf& bsdf, float cos_theta) {
+  const float color = max_component(bsdf.sheen_color);
+  return color > 0 ? 1 - color * charlie_albedo(bsdf.sheen_roughness, cos_theta) : 1;
 }
 
 }  // namespace
 
 MetallicRoughnessBsdf metallic_roughness_bsdf(const Material& material, const TextureTable& table,
-                                              const SurfaceInputs& inputs) noexcept {
-  const auto look_up = [&](const TextureUse& use, ColorSpace space) {
-    return sample(table, use, space, inputs.uvs, inputs.uv_count);
+                                              const SurfaceInputs& inputs, float relative_ior) noexcept {
+  const auto linear = [&](const TextureUse& use) {
+    return sample(table, use, ColorSpace::linear, inputs.uvs, inputs.uv_count);
   };
-  const Rgb metal_rough = look_up(material.metallic_roughness_texture, ColorSpace::linear).rgb;
-  const float specular = unit(material.specular * look_up(material.specular_texture, ColorSpace::linear).a);
-  const Rgb tint = material.specular_color * look_up(material.specular_color_texture, ColorSpace::srgb).rgb;
-  const float occlusion = look_up(material.occlusion_texture, ColorSpace::linear).rgb.r;
-  const float root = material.ior == 0 ? 1 : (material.ior - 1) / (material.ior + 1);
-  const Rgb f0 = root * root * tint;
+  const auto srgb = [&](const TextureUse& use) {
+    return sample(table, use, ColorSpace::srgb, inputs.uvs, inputs.uv_count).rgb;
+  };
+  const Rgb metal_rough = linear(material.metallic_roughness_texture).rgb;
+  const float specular = unit(material.specular * linear(material.specular_texture).a);
+  const float root = relative_ior == 0 ? 1 : (relative_ior - 1) / (relative_ior + 1);
+  const Rgb f0 = root * root * material.specular_color * srgb(material.specular_color_texture);
 
   MetallicRoughnessBsdf bsdf;
-  bsdf.base_color =
-      material.base_color.rgb * inputs.color.rgb * look_up(material.base_color_texture, ColorSpace::srgb).rgb;
+  bsdf.base_color = material.base_color.rgb * inputs.color.rgb * srgb(material.base_color_texture);
   bsdf.metallic = unit(material.metallic * metal_rough.b);
   bsdf.roughness = unit(material.roughness * metal_rough.g);
   bsdf.dielectric_f0 = Rgb{unit(f0.r), unit(f0.g), unit(f0.b)} * specular;
   bsdf.dielectric_f90 = specular;
-  bsdf.transmission = unit(material.transmission * look_up(material.transmission_texture, ColorSpace::linear).rgb.r);
-  bsdf.occlusion = unit(1 + material.occlusion_strength * (occlusion - 1));
-  bsdf.ior = material.ior;
+  bsdf.transmission = unit(material.transmission * linear(material.transmission_texture).rgb.r);
+  bsdf.occlusion = unit(1 + material.occlusion_strength * (linear(material.occlusion_texture).rgb.r - 1));
+  if (const DiffuseTransmission& d = material.diffuse_transmission; d.factor > 0) {
+    bsdf.diffuse_transmission = unit(d.factor * linear(d.texture).a);
+    bsdf.diffuse_transmission_color = d.color * srgb(d.color_texture);
+  }
+  if (const Anisotropy& a = material.anisotropy; a.strength > 0)
+    bsdf.anisotropy = unit(a.strength * linear(a.texture).rgb.b);
+  if (const Iridescence& i = material.iridescence; i.factor > 0) {
+    bsdf.iridescence = unit(i.factor * linear(i.texture).rgb.r);
+    bsdf.film_ior = i.ior;
+    const float t = linear(i.thickness_texture).rgb.g;
+    bsdf.film_thickness_nm = i.thickness_min_nm + (i.thickness_max_nm - i.thickness_min_nm) * t;
+  }
+  if (const Sheen& sheen = material.sheen; max_component(sheen.color) > 0) {
+    bsdf.sheen_color = sheen.color * srgb(sheen.color_texture);
+    bsdf.sheen_roughness = unit(sheen.roughness * linear(sheen.roughness_texture).a);
+  }
+  if (const Clearcoat& coat = material.clearcoat; coat.factor > 0) {
+    bsdf.clearcoat = unit(coat.factor * linear(coat.texture).rgb.r);
+    bsdf.clearcoat_roughness = unit(coat.roughness * linear(coat.roughness_texture).rgb.g);
+  }
   return bsdf;
 }
 
-Rgb reflected_light(const MetallicRoughnessBsdf& bsdf, const Vec3f& n, const Vec3f& s, const Vec3f& b) noexcept {
-  const float ns = dot(n, s);
-  if (!(ns > 0)) return {};
-  const float nb = std::max(0.0f, dot(n, b));
+Rgb reflected_light(const MetallicRoughnessBsdf& bsdf, const LayerFrames& frames, const Vec3f& s,
+                    const Vec3f& b) noexcept {
+  const float ns = dot(frames.base.n, s);
+  if (!(ns > 0)) return light_from_behind(bsdf, frames, s, b);
   const Vec3f h = normalize(s + b);
-  const float nh = dot(n, h), bh = dot(b, h);
-
-  const float alpha = std::max(1e-3f, bsdf.roughness * bsdf.roughness), a2 = alpha * alpha;
-  float specular = 0;
-  if (nh > 0) {
-    // 1 - (n·h)² as |n x h|²: no cancellation where a sharp highlight needs the digits.
-    const Vec3f nxh = cross(n, h);
-    const float q = dot(nxh, nxh) + a2 * nh * nh;
-    const float distribution = a2 * kInvPi / (q * q);
-    const float visibility = 0.5f / (ns * std::sqrt(nb * nb * (1 - a2) + a2) + nb * std::sqrt(ns * ns * (1 - a2) + a2));
-    specular = distribution * visibility;
+  Rgb light = base_light(bsdf, frames, s, b, h);
+  if (max_component(bsdf.sheen_color) > 0) {
+    const float nb = std::max(0.0f, dot(frames.base.n, b));
+    const float sheen = charlie(bsdf.sheen_roughness, ns, nb, dot(frames.base.n, h));
+    light = light * std::min(sheen_transmittance(bsdf, nb), sheen_transmittance(bsdf, ns)) +
+            bsdf.sheen_color * (sheen * ns);
   }
-
-  const Rgb fresnel = dielectric_fresnel(bsdf, bh);
-  const Rgb diffuse = bsdf.base_color * (kInvPi * (1 - bsdf.transmission));
-  const Rgb dielectric = diffuse * (1 - max_component(fresnel)) + fresnel * specular;
-  const Rgb metal = metal_fresnel(bsdf, bh) * specular;
-  return lerp(dielectric, metal, bsdf.metallic) * ns;
+  if (bsdf.clearcoat > 0) {
+    const float kept = coat_reflectance(bsdf, frames.coat_n, b), coat_ns = dot(frames.coat_n, s);
+    const ShadingFrame coat{{}, {}, frames.coat_n};  // isotropic: the axes across do not matter
+    const float lobe = coat_ns > 0 ? ggx(alpha_of(bsdf.clearcoat_roughness), coat, s, b, h) * coat_ns : 0;
+    light = light * (1 - kept) + Rgb{kept * lobe};
+  }
+  return light;
 }
 
-Rgb diffuse_albedo(const MetallicRoughnessBsdf& bsdf) noexcept {
-  return bsdf.base_color * ((1 - bsdf.metallic) * (1 - bsdf.transmission));
+DiffuseAlbedo diffuse_albedo(const MetallicRoughnessBsdf& bsdf, const LayerFrames& frames, const Vec3f& b) noexcept {
+  const float share = (1 - bsdf.metallic) * (1 - bsdf.transmission), left = layers_transmittance(bsdf, frames, b);
+  const float nb = std::max(0.0f, dot(frames.base.n, b));
+  Rgb front = bsdf.base_color * (share * (1 - bsdf.diffuse_transmission) * left);
+  if (max_component(bsdf.sheen_color) > 0)
+    front +=
+        bsdf.sheen_color * (charlie_albedo(bsdf.sheen_roughness, nb) * (1 - coat_reflectance(bsdf, frames.coat_n, b)));
+  return {front, bsdf.diffuse_transmission_color * (share * bsdf.diffuse_transmission * left)};
 }
 
 Rgb specular_reflectance(const MetallicRoughnessBsdf& bsdf, float cos_theta) noexcept {
   return lerp(dielectric_fresnel(bsdf, cos_theta), metal_fresnel(bsdf, cos_theta), bsdf.metallic);
+}
+
+Rgb specular_albedo(const MetallicRoughnessBsdf& bsdf, float cos_theta) noexcept {
+  const SplitSum split = ggx_albedo(bsdf.roughness, cos_theta);
+  const Rgb dielectric = with_film(bsdf, bsdf.dielectric_f0, bsdf.dielectric_f0, cos_theta) * split.scale +
+                         Rgb{bsdf.dielectric_f90 * split.bias};
+  const Rgb metal = with_film(bsdf, bsdf.base_color, bsdf.base_color, cos_theta) * split.scale + Rgb{split.bias};
+  return lerp(dielectric, metal, bsdf.metallic);
+}
+
+float layers_transmittance(const MetallicRoughnessBsdf& bsdf, const LayerFrames& frames, const Vec3f& b) noexcept {
+  const float nb = std::max(0.0f, dot(frames.base.n, b));
+  return sheen_transmittance(bsdf, nb) * (1 - coat_reflectance(bsdf, frames.coat_n, b));
+}
+
+float coat_reflectance(const MetallicRoughnessBsdf& bsdf, const Vec3f& coat_n, const Vec3f& b) noexcept {
+  if (!(bsdf.clearcoat > 0)) return 0;
+  return bsdf.clearcoat * fresnel_schlick(Rgb{kCoatF0}, 1, std::abs(dot(coat_n, b))).r;
 }
 
 float mirror_share(float roughness) noexcept {

@@ -42,7 +42,7 @@ void push_camera_rays(const Camera& camera, const RenderOptions& options, const 
       fx += double(sample_tent(u.x)), fy += double(sample_tent(u.y));
     }
     const uint32_t pixel = uint32_t((y - cell.y0) * kCellSize + (x - cell.x0));
-    wave.push(camera_ray(camera, options.width, options.height, fx, fy), pixel, Rgb(1.0f), 0, RayKind::camera);
+    wave.push(camera_ray(camera, options.width, options.height, fx, fy), {.pixel = pixel});
   });
 }
 
@@ -69,7 +69,7 @@ struct CellWorker {
       if (arena.hits.object[i] == kNone) continue;
       const HitIds hit{arena.hits.object[i], arena.hits.part[i], arena.hits.primitive[i]};
       const SurfaceIds ids = surface_ids(scene, hit);
-      uint32_t* out = pixel_at(result.ids, cell, arena.pending.pixel[i]);
+      uint32_t* out = pixel_at(result.ids, cell, arena.pending.paths[i].pixel);
       out[0] = ids.node, out[1] = ids.primitive, out[2] = ids.material;
     }
     control.camera_rays += arena.pending.size();

@@ -17,12 +17,20 @@ constexpr size_t kShadowLimit = 8192;  // shadow rays gathered before they are t
 struct Shading {
   const SurfacePoint& surface;
   const Material& material;
-  Vec3f d, b, n;  // ray direction, back along it, shading normal turned towards b; unit length
-  bool enters;    // n of the surface against d
-  Rgb weight;     // of the ray, times the surface's coverage
-  uint32_t pixel;
-  uint16_t depth;
+  Vec3f d, b, n;      // ray direction, back along it, shading normal turned towards b; unit length
+  bool enters;        // n of the surface against d
+  Rgb weight;         // of the ray, times the surface's coverage
+  const Path& path;   // of the ray
+  Boundary boundary;  // where the surface bounds a body
 };
+
+/// A direction in tangent space brought to the world.
+Vec3f world_from_tangent(const SurfacePoint& surface, const Vec3f& m) {
+  const Vec3f t = surface.tangent_world, bitangent = cross(surface.ns_world, t) * surface.bitangent_sign;
+  return normalize(t * m.x + bitangent * m.y + surface.ns_world * m.z);
+}
+
+bool has_tangent(const SurfacePoint& surface) { return dot(surface.tangent_world, surface.tangent_world) > 0; }
 
 class Whitted {
  public:
@@ -40,7 +48,7 @@ class Whitted {
     bool first = true;
     while (arena_.pending.size() > 0) {
       take_wave();
-      for (size_t i = 0; i < arena_.current.size(); ++i) ++arena_.rays_by_kind[size_t(arena_.current.kind[i])];
+      for (size_t i = 0; i < arena_.current.size(); ++i) ++arena_.rays_by_kind[size_t(arena_.current.paths[i].kind)];
       accelerated_.intersect(arena_.current.rays, first ? Coherence::coherent : Coherence::incoherent, arena_.hits);
       for (size_t i = 0; i < arena_.current.size(); ++i) shade(i);
       trace_shadows(first ? Coherence::coherent : Coherence::incoherent);
@@ -59,62 +67,78 @@ class Whitted {
     }
     const size_t first = from.size() - kWaveLimit;
     to.resize(0);
-    for (size_t i = first; i < from.size(); ++i)
-      to.push(from.rays.get(i), from.pixel[i], from.weight[i], from.depth[i], from.kind[i]);
+    for (size_t i = first; i < from.size(); ++i) to.push(from.rays.get(i), from.paths[i]);
     from.resize(first);
   }
 
   void shade(size_t i) {
-    const PathWave& wave = arena_.current;
+    const Path& path = arena_.current.paths[i];
     const HitWave& hits = arena_.hits;
-    const uint32_t pixel = wave.pixel[i];
-    const bool view = wave.kind[i] == RayKind::camera || wave.kind[i] == RayKind::straight;
+    const bool view = path.kind == RayKind::camera || path.kind == RayKind::straight;
     if (hits.object[i] == kNone) {
       if (options_.transparent && view)
-        background_[pixel] += wave.weight[i].r;  // a product of (1 - alpha): grey
+        background_[path.pixel] += path.weight.r;  // a product of (1 - alpha): grey
       else
-        radiance_[pixel] += wave.weight[i] * scene_.background;
+        radiance_[path.pixel] += path.weight * scene_.background;
       return;
     }
-    const Rayf ray = wave.rays.get(i);
+    const Rayf ray = arena_.current.rays.get(i);
     const SurfacePoint surface =
         surface_point(scene_, ray, {hits.object[i], hits.part[i], hits.primitive[i]}, hits.t[i], hits.u[i], hits.v[i]);
     const Material& material = scene_.materials[surface.material];
     const SurfaceInputs inputs = surface.inputs();
     const float alpha = material.alpha_mode == AlphaMode::blend ? coverage(material, table_, inputs) : 1.0f;
-    Vec3f n = shading_normal(surface, material);
-    const Vec3f b = -ray.direction;
+    const Rgb arriving =
+        path.media.count > 0 ? path.weight * transmittance(path.media, scene_.materials, hits.t[i]) : path.weight;
+    Vec3f n = shading_normal(surface, material.normal_texture, material.normal_scale);
     const bool enters = dot(n, ray.direction) < 0;
     if (!enters) n = -n;
-    const Shading s{surface, material, ray.direction, b, n, enters, wave.weight[i] * alpha, pixel, wave.depth[i]};
+    Shading s{surface, material, ray.direction, -ray.direction, n, enters, arriving * alpha, path, {}};
+    if (bounds_body(material)) {
+      s.boundary =
+          cross_boundary(path.media, surface.material, dot(surface.ng_world, ray.direction) < 0, scene_.materials);
+      if (!s.boundary.seen)
+        return spawn_as(s, ray.direction, {path.pixel, arriving, path.depth, path.kind, s.boundary.after});
+    }
     if (alpha < 1) {
       // A texel that is not there at all costs no depth: foliage is made of many of them.
-      const uint16_t depth = alpha > 0 ? uint16_t(s.depth + 1) : s.depth;
-      spawn_at_depth(s, ray.direction, wave.weight[i] * (1 - alpha), view ? RayKind::straight : wave.kind[i], depth);
+      const uint16_t depth = alpha > 0 ? uint16_t(path.depth + 1) : path.depth;
+      spawn_as(s, ray.direction,
+               {path.pixel, arriving * (1 - alpha), depth, view ? RayKind::straight : path.kind, path.media});
     }
     if (alpha == 0) return;
-    radiance_[pixel] += s.weight * emission(material, table_, inputs);
-    if (material.model == ShadingModel::unlit) return;
-    if (material.model == ShadingModel::phong)
-      shade_phong(s, phong_bsdf(material, table_, inputs));
-    else
-      shade_metallic_roughness(s, metallic_roughness_bsdf(material, table_, inputs));
+    const Rgb emitted = s.weight * emission(material, table_, inputs);
+    switch (material.model) {
+      case ShadingModel::unlit:
+        radiance_[path.pixel] += emitted;
+        break;
+      case ShadingModel::phong:
+        radiance_[path.pixel] += emitted;
+        shade_phong(s, phong_bsdf(material, table_, inputs));
+        break;
+      case ShadingModel::metallic_roughness:
+        shade_metallic_roughness(s, metallic_roughness_bsdf(material, table_, inputs, relative_ior(s)), emitted);
+    }
   }
 
-  [[nodiscard]] Vec3f shading_normal(const SurfacePoint& s, const Material& material) const {
-    if (!material.normal_texture || !(dot(s.tangent_world, s.tangent_world) > 0)) return s.ns_world;
-    const Vec3f m = tangent_space_normal(material, table_, s.inputs());
-    const Vec3f t = s.tangent_world, bitangent = cross(s.ns_world, t) * s.bitangent_sign;
-    const Vec3f n = normalize(t * m.x + bitangent * m.y + s.ns_world * m.z);
+  /// Of what lies beyond the surface to what lies before it.
+  static float relative_ior(const Shading& s) {
+    return bounds_body(s.material) ? s.boundary.ior_after.g / s.boundary.ior_before.g : s.material.ior;
+  }
+
+  [[nodiscard]] Vec3f shading_normal(const SurfacePoint& s, const TextureUse& texture, float scale) const {
+    if (!texture || !has_tangent(s)) return s.ns_world;
+    const Vec3f n = world_from_tangent(s, tangent_space_normal(texture, scale, table_, s.inputs()));
     return is_finite(n) && dot(n, n) > 0 ? n : s.ns_world;
   }
 
   void shade_phong(const Shading& s, const PhongBsdf& bsdf) {
-    radiance_[s.pixel] += s.weight * bsdf.ambient * scene_.ambient;
+    radiance_[s.path.pixel] += s.weight * bsdf.ambient * scene_.ambient;
     add_lights(s, [&](const Vec3f& to_light) { return reflected_light(bsdf, s.n, to_light, s.b); });
 
     Rgb mirror = bsdf.reflection, through = bsdf.transmission;
-    const float eta = s.enters ? 1 / bsdf.ior : bsdf.ior;
+    const bool body = bounds_body(s.material);
+    const float eta = body ? s.boundary.ior_before.g / s.boundary.ior_after.g : s.enters ? 1 / bsdf.ior : bsdf.ior;
     Vec3f refracted;
     const bool passes = max_component(through) > 0 && refract(s.d, s.n, eta, refracted);
     if (bsdf.fresnel) {
@@ -124,36 +148,106 @@ class Whitted {
     } else if (!passes) {
       mirror += through;
     }
-    spawn(s, reflect(s.d, s.n), s.weight * mirror, RayKind::mirror);
-    if (passes) spawn(s, refracted, s.weight * through, RayKind::refracted);
+    spawn(s, reflect(s.d, s.n), s.weight * mirror, RayKind::mirror, s.path.media);
+    if (passes) spawn(s, refracted, s.weight * through, RayKind::refracted, body ? s.boundary.after : s.path.media);
   }
 
-  void shade_metallic_roughness(const Shading& s, const MetallicRoughnessBsdf& bsdf) {
-    const float cos_view = std::max(0.0f, dot(s.n, s.b)), share = mirror_share(bsdf.roughness);
-    // Diffuse ambient light, and for metal the part of the reflection that no mirror ray stands for.
-    const Rgb rough_metal = bsdf.base_color * (bsdf.metallic * (1 - share));
-    radiance_[s.pixel] += s.weight * (diffuse_albedo(bsdf) + rough_metal) * scene_.ambient * bsdf.occlusion;
-    add_lights(s, [&](const Vec3f& to_light) { return reflected_light(bsdf, s.n, to_light, s.b); });
+  void shade_metallic_roughness(const Shading& s, const MetallicRoughnessBsdf& bsdf, const Rgb& emitted) {
+    const LayerFrames frames = layer_frames(s, bsdf);
+    const float share = mirror_share(bsdf.roughness), coat_share = mirror_share(bsdf.clearcoat_roughness);
+    const float coat = coat_reflectance(bsdf, frames.coat_n, s.b);
+    // Diffuse ambient light, and for metal and coat the part of the reflection that no mirror ray stands for.
+    const DiffuseAlbedo diffuse = diffuse_albedo(bsdf, frames, s.b);
+    const Rgb rough = bsdf.base_color * (bsdf.metallic * (1 - share) * layers_transmittance(bsdf, frames, s.b)) +
+                      Rgb{coat * (1 - coat_share)};
+    radiance_[s.path.pixel] += emitted * (1 - coat);
+    radiance_[s.path.pixel] += s.weight * (diffuse.front + diffuse.back + rough) * scene_.ambient * bsdf.occlusion;
+    add_lights(s, [&](const Vec3f& to_light) { return reflected_light(bsdf, frames, to_light, s.b); });
 
-    const Rgb fresnel = specular_reflectance(bsdf, cos_view);
-    Vec3f mirrored = reflect(s.d, s.n);
-    // A bumped normal may send the mirror ray below the surface: turn it back to the side that is seen.
+    const Transmission passing = transmission(s, bsdf);
+    const Rgb left{layers_transmittance(bsdf, frames, s.b)};
+    Rgb mirror = left * passing.fresnel * share;
+    const Rgb coat_mirror{coat * coat_share};
+    if (frames.coat_n == s.n)
+      mirror += coat_mirror;
+    else
+      spawn(s, above_surface(s, reflect(s.d, frames.coat_n)), s.weight * coat_mirror, RayKind::mirror, s.path.media);
+    spawn(s, above_surface(s, reflect(s.d, s.n)), s.weight * mirror, RayKind::mirror, s.path.media);
+    const Rgb through = left * (Rgb(1.0f) - passing.fresnel) * bsdf.base_color;
+    spawn_transmitted(s, through * (bsdf.transmission * (1 - bsdf.metallic)), passing);
+  }
+
+  [[nodiscard]] LayerFrames layer_frames(const Shading& s, const MetallicRoughnessBsdf& bsdf) const {
+    LayerFrames frames{ShadingFrame{{}, {}, s.n}, s.n};
+    if (bsdf.clearcoat > 0) {
+      const Clearcoat& coat = s.material.clearcoat;
+      const Vec3f n = shading_normal(s.surface, coat.normal_texture, coat.normal_scale);
+      frames.coat_n = dot(n, s.b) < 0 ? -n : n;
+    }
+    if (bsdf.anisotropy > 0 && has_tangent(s.surface)) {
+      const float angle = anisotropy_angle(s.material, table_, s.surface.inputs());
+      const Vec3f along = world_from_tangent(s.surface, {std::cos(angle), std::sin(angle), 0});
+      frames.base.t = normalize(along - s.n * dot(s.n, along));
+      frames.base.b = cross(s.n, frames.base.t);
+    } else if (bsdf.anisotropy > 0) {
+      frames.base = frame_about(s.n);
+    }
+    return frames;
+  }
+
+  /// A bumped normal may send the mirror ray below the surface: turned back to the side that is seen.
+  static Vec3f above_surface(const Shading& s, const Vec3f& mirrored) {
     const Vec3f ng = dot(s.surface.ng_world, s.b) < 0 ? -s.surface.ng_world : s.surface.ng_world;
-    if (const float below = dot(mirrored, ng); below < 0) mirrored = normalize(mirrored - (2 * below) * ng);
-    spawn(s, mirrored, s.weight * fresnel * share, RayKind::mirror);
-    const Rgb thin = (Rgb(1.0f) - fresnel) * bsdf.base_color * (bsdf.transmission * (1 - bsdf.metallic));
-    spawn(s, s.d, s.weight * thin, RayKind::refracted);  // thin-walled: in and out at once
+    const float below = dot(mirrored, ng);
+    return below < 0 ? normalize(mirrored - (2 * below) * ng) : mirrored;
   }
 
-  void spawn(const Shading& s, const Vec3f& direction, const Rgb& weight, RayKind kind) {
-    spawn_at_depth(s, direction, weight, kind, uint16_t(s.depth + 1));
+  /// Specular light at the base: what is reflected, and where the rest goes.
+  struct Transmission {
+    Rgb fresnel;
+    bool passes = true;
+    Vec3f direction;
+    Media media;
+  };
+
+  /// For green light, or white light that is not dispersed.
+  static Transmission transmission(const Shading& s, const MetallicRoughnessBsdf& bsdf) {
+    const float cos_view = std::max(0.0f, dot(s.n, s.b));
+    // Thin-walled: in and out at once.
+    if (!bounds_body(s.material)) return {specular_reflectance(bsdf, cos_view), true, s.d, s.path.media};
+    Transmission t{.fresnel = Rgb{1.0f}, .passes = false, .direction = s.d, .media = s.boundary.after};
+    t.passes = refract(s.d, s.n, s.boundary.ior_before.g / s.boundary.ior_after.g, t.direction);
+    // Schlick's cosine is that on the side of the lower index.
+    const bool to_thinner = s.boundary.ior_before.g > s.boundary.ior_after.g;
+    if (t.passes) t.fresnel = specular_reflectance(bsdf, to_thinner ? -dot(t.direction, s.n) : cos_view);
+    return t;
   }
 
-  void spawn_at_depth(const Shading& s, const Vec3f& direction, const Rgb& weight, RayKind kind, uint16_t depth) {
-    const float largest = max_component(weight);
-    if (int(depth) > options_.max_depth || !(largest >= options_.min_weight) || !(largest > 0)) return;
-    Rayf ray{spawn_origin(s.surface, direction), normalize(direction)};
-    arena_.pending.push(ray, s.pixel, weight, depth, kind);
+  void spawn_transmitted(const Shading& s, const Rgb& share, const Transmission& passing) {
+    const Rgb &before = s.boundary.ior_before, &after = s.boundary.ior_after;
+    if (before.r == before.b && after.r == after.b) {
+      if (passing.passes) spawn(s, passing.direction, s.weight * share, RayKind::refracted, passing.media);
+      return;
+    }
+    // A ray for each of red, green and blue; the colours of a ray that was split before go on alone.
+    const auto spawn_color = [&](float eta, const Rgb& color) {
+      Vec3f refracted;
+      if (refract(s.d, s.n, eta, refracted))
+        spawn(s, refracted, s.weight * share * color, RayKind::refracted, passing.media);
+    };
+    spawn_color(before.r / after.r, {1, 0, 0});
+    spawn_color(before.g / after.g, {0, 1, 0});
+    spawn_color(before.b / after.b, {0, 0, 1});
+  }
+
+  void spawn(const Shading& s, const Vec3f& direction, const Rgb& weight, RayKind kind, const Media& media) {
+    spawn_as(s, direction, {s.path.pixel, weight, uint16_t(s.path.depth + 1), kind, media});
+  }
+
+  void spawn_as(const Shading& s, const Vec3f& direction, const Path& path) {
+    const float largest = max_component(path.weight);
+    if (int(path.depth) > options_.max_depth || !(largest >= options_.min_weight) || !(largest > 0)) return;
+    arena_.pending.push({spawn_origin(s.surface, direction), normalize(direction)}, path);
   }
 
   /// Queues one shadow ray for each light whose reflected light is not 0.
@@ -175,7 +269,7 @@ class Whitted {
         ray.direction = segment, ray.t_max = 1;
       }
       arena_.shadow.set(i, ray);
-      arena_.shadow_pixel[i] = s.pixel, arena_.shadow_light[i] = light_to_eye;
+      arena_.shadow_pixel[i] = s.path.pixel, arena_.shadow_light[i] = light_to_eye;
       if (i + 1 == kShadowLimit) trace_shadows(Coherence::incoherent);
     }
   }

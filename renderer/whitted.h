@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "renderer/media.h"
 #include "renderer/render.h"
 #include "renderer/surface.h"
 
@@ -11,20 +12,26 @@ namespace alhazen {
 /// What a ray is for. A `straight` ray continues the view of its camera ray through surfaces with alpha.
 enum class RayKind : uint8_t { camera, mirror, refracted, straight };
 
+/// What a ray brings along: on whose behalf it is traced, and through what.
+struct Path {
+  uint32_t pixel = 0;  // index of the sample's pixel within the cell
+  Rgb weight{1.0f};
+  uint16_t depth = 0;
+  RayKind kind = RayKind::camera;
+  Media media{};  // around its origin
+};
+
 /// A wave of rays on their way to pixels.
 struct PathWave {
   RayWave rays;
-  Lanes<uint32_t> pixel;  // index of the sample's pixel within the cell
-  Lanes<Rgb> weight;
-  Lanes<uint16_t> depth;
-  Lanes<RayKind> kind;
+  Lanes<Path> paths;
 
   [[nodiscard]] size_t size() const { return rays.size(); }
-  void resize(size_t n) { rays.resize(n), pixel.resize(n), weight.resize(n), depth.resize(n), kind.resize(n); }
-  void push(const Rayf& ray, uint32_t pixel_index, const Rgb& w, uint16_t d, RayKind k) {
+  void resize(size_t n) { rays.resize(n), paths.resize(n); }
+  void push(const Rayf& ray, const Path& path) {
     const size_t i = size();
     resize(i + 1);
-    rays.set(i, ray), pixel[i] = pixel_index, weight[i] = w, depth[i] = d, kind[i] = k;
+    rays.set(i, ray), paths[i] = path;
   }
 };
 

@@ -203,11 +203,11 @@ TEST(Phong, Terms) {
   const Vec3f n{0, 0, 1};
   const float theta = 0.6f, off = 0.3f;
   const Vec3f s = direction(theta, 0);
-  const Rgb mirror = reflected_light(bsdf, n, s, direction(theta, kPi));
+  const Rgb mirror = reflected_light(bsdf, LayerFrames{n}, s, direction(theta, kPi));
   EXPECT_NEAR(mirror.r, 0.6f * std::cos(theta) + 0.5f, 1e-5f);
-  const Rgb aside = reflected_light(bsdf, n, s, direction(theta + off, kPi));
+  const Rgb aside = reflected_light(bsdf, LayerFrames{n}, s, direction(theta + off, kPi));
   EXPECT_NEAR(aside.r, 0.6f * std::cos(theta) + 0.5f * std::pow(std::cos(off), 10.0f), 1e-5f);
-  EXPECT_EQ(reflected_light(bsdf, n, -s, direction(theta, kPi)), Rgb{});
+  EXPECT_EQ(reflected_light(bsdf, LayerFrames{n}, -s, direction(theta, kPi)), Rgb{});
 }
 
 TEST(MetallicRoughness, DielectricWithoutSpecularIsLambert) {
@@ -216,7 +216,7 @@ TEST(MetallicRoughness, DielectricWithoutSpecularIsLambert) {
   m.specular = 0;
   m.base_color.rgb = {0.2f, 0.4f, 0.8f};
   const MetallicRoughnessBsdf bsdf = metallic_roughness_bsdf(m, {}, {});
-  const Rgb c = reflected_light(bsdf, {0, 0, 1}, direction(0.5f, 1), direction(1.1f, 4));
+  const Rgb c = reflected_light(bsdf, LayerFrames{Vec3f{0, 0, 1}}, direction(0.5f, 1), direction(1.1f, 4));
   EXPECT_NEAR(c.r, 0.2f / kPi * std::cos(0.5f), 1e-6f);
   EXPECT_NEAR(c.b, 0.8f / kPi * std::cos(0.5f), 1e-6f);
 }
@@ -228,8 +228,8 @@ TEST(MetallicRoughness, RoughDielectricAtNormalIncidence) {
   // alpha = 1: D = 1 / pi, V = 1 / 4, F = 0.04.
   const MetallicRoughnessBsdf bsdf = metallic_roughness_bsdf(m, {}, {});
   EXPECT_NEAR(bsdf.dielectric_f0.r, 0.04f, 1e-6f);
-  EXPECT_NEAR(reflected_light(bsdf, n, n, n).r, (0.96f + 0.04f / 4) / kPi, 1e-6f);
-  EXPECT_EQ(reflected_light(bsdf, n, -n, n), Rgb{});
+  EXPECT_NEAR(reflected_light(bsdf, LayerFrames{n}, n, n).r, (0.96f + 0.04f / 4) / kPi, 1e-6f);
+  EXPECT_EQ(reflected_light(bsdf, LayerFrames{n}, -n, n), Rgb{});
 }
 
 TEST(MetallicRoughness, Parameters) {
@@ -246,7 +246,7 @@ TEST(MetallicRoughness, Parameters) {
   m.ior = 0, m.specular = 1, m.specular_color = Rgb{1.0f}, m.metallic = 0.5f;
   bsdf = metallic_roughness_bsdf(m, {}, {});
   EXPECT_EQ(bsdf.dielectric_f0, Rgb{1.0f});
-  EXPECT_EQ(diffuse_albedo(bsdf), Rgb{0.5f * 0.75f});
+  EXPECT_EQ(diffuse_albedo(bsdf, LayerFrames{Vec3f{0, 0, 1}}, {0, 0, 1}).front, Rgb{0.5f * 0.75f});
   EXPECT_EQ(specular_reflectance(bsdf, 1), Rgb{1.0f});
 
   OneTexture t;
@@ -276,7 +276,7 @@ TEST(MetallicRoughness, ReflectsNoMoreThanItReceives) {
         for (int i = 0; i < rows; ++i)
           for (int j = 0; j < columns; ++j) {
             const float theta = (float(i) + 0.5f) / rows * kPi / 2, phi = (float(j) + 0.5f) / columns * 2 * kPi;
-            sum += double(reflected_light(bsdf, n, direction(theta, phi), direction(view, 0)).r * std::sin(theta));
+            sum += double(reflected_light(bsdf, LayerFrames{n}, direction(theta, phi), direction(view, 0)).r * std::sin(theta));
           }
         sum *= double(kPi / 2 / rows) * double(2 * kPi / columns);
         EXPECT_LE(sum, 1.005) << metallic << " " << roughness << " " << view;
@@ -293,7 +293,7 @@ TEST(MetallicRoughness, SmoothHighlightsStayFiniteAndMirrorShareFalls) {
   const Vec3f n{0, 0, 1};
   const MetallicRoughnessBsdf bsdf = metallic_roughness_bsdf(m, {}, {});
   for (float theta : {0.0f, 0.8f, 1.5707f})
-    EXPECT_TRUE(is_finite(reflected_light(bsdf, n, direction(theta, 0), direction(theta, kPi))));
+    EXPECT_TRUE(is_finite(reflected_light(bsdf, LayerFrames{n}, direction(theta, 0), direction(theta, kPi))));
   EXPECT_EQ(mirror_share(0), 1);
   EXPECT_FLOAT_EQ(mirror_share(0.25f), 0.5f);
   EXPECT_EQ(mirror_share(0.5f), 0);
@@ -348,17 +348,17 @@ TEST(Material, EmissionAndTangentSpaceNormal) {
   EXPECT_EQ(emission(m, {}, {}), (Rgb{0.1f, 0.2f, 0.3f}));
 
   const Vec3f up{0, 0, 1};
-  EXPECT_EQ(tangent_space_normal(m, {}, {}), up);
+  EXPECT_EQ(tangent_space_normal(m.normal_texture, m.normal_scale, {}, {}), up);
   OneTexture t;
   m.normal_texture = t.use;
-  EXPECT_EQ(tangent_space_normal(m, t.table(), {}), up);  // an image that was not decoded
+  EXPECT_EQ(tangent_space_normal(m.normal_texture, m.normal_scale, t.table(), {}), up);  // an image that was not decoded
   t.images[0] = {1, 1, 3, std::vector<float>{0.8f, 0.5f, 0.9f}};
   m.normal_scale = 0.5f;
-  const Vec3f n = tangent_space_normal(m, t.table(), {});
+  const Vec3f n = tangent_space_normal(m.normal_texture, m.normal_scale, t.table(), {});
   const Vec3f expected = normalize(Vec3f{0.3f, 0, 0.8f});
   EXPECT_NEAR(length(n - expected), 0, 1e-6f);
   t.images[0] = {1, 1, 3, std::vector<float>{0, 0, 0}};
-  EXPECT_EQ(tangent_space_normal(m, t.table(), {}), up);
+  EXPECT_EQ(tangent_space_normal(m.normal_texture, m.normal_scale, t.table(), {}), up);
 }
 
 }  // namespace
