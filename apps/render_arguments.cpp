@@ -85,10 +85,33 @@ void add_light_options(CLI::App& command, RenderArguments& arguments) {
       "The scene's lights, or three studio lights about the camera; auto: studio where the scene has none");
   add_color(command, "--background", arguments.background, "Linear colour behind everything, instead of the scene's");
   add_color(command, "--ambient", arguments.ambient, "Linear ambient light, instead of the scene's");
+  command
+      .add_option("--environment", arguments.environment,
+                  "Equirectangular image (.hdr, .exr) that lights the scene and is its background")
+      ->type_name("FILE");
+  command
+      .add_option("--environment-rotation", arguments.environment_rotation,
+                  "Turns it about the vertical axis, seen from above against the clock")
+      ->type_name("DEG")
+      ->check(finite())
+      ->default_str("0");
+  command.add_option("--environment-strength", arguments.environment_strength, "Multiplies its light")
+      ->type_name("X")
+      ->check(finite())
+      ->check(CLI::NonNegativeNumber.description(""))
+      ->default_str("1");
   command.add_option("--exposure", arguments.exposure, "Stops brighter (or darker): colours are multiplied by 2^STOPS")
       ->type_name("STOPS")
       ->check(finite())
       ->default_str("0");
+  add_choice<ViewTransform>(command, "--view", arguments.view,
+                            {{"standard", ViewTransform::standard},
+                             {"pbr-neutral", ViewTransform::pbr_neutral},
+                             {"agx", ViewTransform::agx},
+                             {"aces", ViewTransform::aces},
+                             {"none", ViewTransform::none}},
+                            "How 8-bit files show the light: standard clamps, pbr-neutral, agx and aces compress "
+                            "highlights, none writes linear numbers");
 }
 
 void add_file_options(CLI::App& command, RenderArguments& arguments) {
@@ -158,6 +181,8 @@ void add_render_options(CLI::App& command, RenderArguments& arguments) {
 void check_arguments(const RenderArguments& arguments) {
   check_encoding(arguments.output, arguments.encoding);
   const bool ids = arguments.options.integrator == Integrator::signature;
+  if (arguments.view != ViewTransform::standard && image_format(arguments.output).linear)
+    throw UsageError("--view: '" + arguments.output + "' stays scene-linear; views are for 8-bit files");
   if (ids && arguments.encoding.half) throw UsageError("--half: a signature holds 32-bit integers");
   if (!arguments.options.transparent) return;
   if (ids) throw UsageError("--transparent: a signature has no alpha");
@@ -175,10 +200,16 @@ std::string picture_options(const RenderArguments& arguments) {
   text += " --spp " + std::to_string(options.samples) + " --max-depth " + std::to_string(options.max_depth) +
           " --min-weight " + number(options.min_weight);
   constexpr const char* kLights[] = {"auto", "scene", "studio"};
+  constexpr const char* kViews[] = {"standard", "pbr-neutral", "agx", "aces", "none"};
   text += std::string(" --lights ") + kLights[size_t(arguments.lights)];
   if (arguments.background) text += " --background " + number(*arguments.background);
   if (arguments.ambient) text += " --ambient " + number(*arguments.ambient);
+  if (!arguments.environment.empty())
+    text += " --environment '" + arguments.environment + "' --environment-rotation " +
+            number(arguments.environment_rotation) + " --environment-strength " +
+            number(arguments.environment_strength);
   text += " --exposure " + number(arguments.exposure);
+  if (arguments.view != ViewTransform::standard) text += std::string(" --view ") + kViews[size_t(arguments.view)];
   if (options.transparent) text += " --transparent";
   return text;
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/progress.h"
+#include "apps/view_transform.h"
 #include "core/vec.h"
 #include "loaders/gltf.h"
 #include "loaders/image_file.h"
@@ -22,7 +23,11 @@ struct RenderArguments {
   RenderOptions options;
   LightChoice lights = LightChoice::automatic;
   std::optional<Rgb> background, ambient;
+  std::string environment;         // file; empty: none
+  float environment_rotation = 0;  // degrees, from above against the clock
+  float environment_strength = 1;
   float exposure = 0;  // stops
+  ViewTransform view = ViewTransform::standard;
   ImageEncoding encoding;
   ProgressStyle progress = ProgressStyle::automatic;
   bool quiet = false;

@@ -5,10 +5,12 @@
 #include <tbb/parallel_invoke.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "accel/accelerated_scene.h"
 #include "apps/exposure.h"
@@ -18,6 +20,7 @@
 #include "apps/render_arguments.h"
 #include "core/error.h"
 #include "core/fork_join.h"
+#include "loaders/environment_file.h"
 #include "loaders/gltf.h"
 #include "loaders/image_decode.h"
 
@@ -46,10 +49,21 @@ struct PhaseSeconds {
   double load = 0, build = 0, render = 0, write = 0;
 };
 
+/// The environment of the command line.
+Environment environment(const RenderArguments& arguments) {
+  Environment environment = load_environment(arguments.environment);
+  const double angle = double(arguments.environment_rotation) * std::numbers::pi / 180;
+  const float c = float(std::cos(angle)), s = float(std::sin(angle));
+  environment.environment_from_world = {{c, 0, s}, {0, 1, 0}, {-s, 0, c}, {}};
+  environment.strength = arguments.environment_strength;
+  return environment;
+}
+
 void set_up_lights(Scene& scene, const Camera& camera, const RenderArguments& arguments) {
   if (arguments.ambient) scene.ambient = *arguments.ambient, scene.has_ambient = true;
   if (arguments.background) scene.background = *arguments.background, scene.has_background = true;
-  const bool unlit = scene.lights.empty() && !scene.has_ambient;
+  if (!arguments.environment.empty()) scene.environment = environment(arguments);
+  const bool unlit = scene.lights.empty() && !scene.has_ambient && !scene.environment;
   if (arguments.lights == LightChoice::studio) scene.lights.clear();
   if (arguments.lights == LightChoice::studio || (arguments.lights == LightChoice::automatic && unlit))
     add_studio_lights(scene, camera);
@@ -96,8 +110,11 @@ void write(const RenderArguments& arguments, RenderResult& result, double render
   if (arguments.options.integrator == Integrator::signature)
     return write_image(arguments.output, result.ids, arguments.encoding, metadata);
   expose(result.color, arguments.exposure);
+  if (arguments.view == ViewTransform::standard)
+    mention_clipping(result.color, arguments);
+  else
+    apply(arguments.view, result.color);
   write_image(arguments.output, result.color, arguments.encoding, metadata);
-  mention_clipping(result.color, arguments);
 }
 
 /// "5184", "98.3 M"

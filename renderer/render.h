@@ -49,8 +49,8 @@ struct RenderResult {
 /// A three-quarter view of everything placed, as large as fits, for the aspect ratio width / height.
 [[nodiscard]] Camera framing_camera(const Geometry& geometry, double aspect);
 
-/// Key, fill and rim light about the camera, neutral, with ambient light and a grey background where the scene names
-/// none.
+/// Key, fill and rim light about the camera, neutral; where the scene has neither ambient light nor an environment also
+/// `studio_environment`; where it names no background, a grey one.
 void add_studio_lights(Scene& scene, const Camera& camera);
 
 }  // namespace alhazen

@@ -1,12 +1,14 @@
 // A scene as plain data: indices instead of pointers; nothing here knows files, Embree or threads.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "accel/geometry.h"
 #include "core/transform.h"
 #include "materials/material.h"
+#include "renderer/environment.h"
 
 namespace alhazen {
 
@@ -44,6 +46,7 @@ struct Scene {
   std::vector<std::string> node_names;  // by glTF node index
   Rgb ambient{0.0f}, background{0.0f};
   bool has_ambient = false, has_background = false;  // whether the file says
+  std::optional<Environment> environment;            // light from all around, in addition to the ambient light
 };
 
 [[nodiscard]] inline TextureTable texture_table(const Scene& scene) { return {&scene.textures, &scene.images}; }

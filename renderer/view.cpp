@@ -51,10 +51,10 @@ void add_studio_lights(Scene& scene, const Camera& camera) {
     light.direction_world = -normalize(transform_vector(m, from_camera));
     scene.lights.push_back(light);
   };
-  directional("studio key", {-0.6, 0.8, 0.7}, Rgb(2.4f, 2.35f, 2.25f));
-  directional("studio fill", {0.9, 0.2, 0.6}, Rgb(0.65f, 0.7f, 0.8f));
-  directional("studio rim", {0.4, 0.7, -0.8}, Rgb(1.3f));
-  if (!scene.has_ambient) scene.ambient = Rgb(0.28f, 0.29f, 0.31f);
+  directional("studio key", {-0.6, 0.8, 0.7}, Rgb(2.0f, 1.96f, 1.88f));
+  directional("studio fill", {0.9, 0.2, 0.6}, Rgb(0.5f, 0.54f, 0.62f));
+  directional("studio rim", {0.4, 0.7, -0.8}, Rgb(1.1f));
+  if (!scene.has_ambient && !scene.environment) scene.environment = studio_environment(-m.z);
   if (!scene.has_background) scene.background = Rgb(0.32f, 0.33f, 0.35f);
 }
 

@@ -74,15 +74,15 @@ class Whitted {
   void shade(size_t i) {
     const Path& path = arena_.current.paths[i];
     const HitWave& hits = arena_.hits;
+    const Rayf ray = arena_.current.rays.get(i);
     const bool view = path.kind == RayKind::camera || path.kind == RayKind::straight;
     if (hits.object[i] == kNone) {
       if (options_.transparent && view)
         background_[path.pixel] += path.weight.r;  // a product of (1 - alpha): grey
       else
-        radiance_[path.pixel] += path.weight * scene_.background;
+        radiance_[path.pixel] += path.weight * sky(path, ray.direction);
       return;
     }
-    const Rayf ray = arena_.current.rays.get(i);
     const SurfacePoint surface =
         surface_point(scene_, ray, {hits.object[i], hits.part[i], hits.primitive[i]}, hits.t[i], hits.u[i], hits.v[i]);
     const Material& material = scene_.materials[surface.material];
@@ -98,13 +98,15 @@ class Whitted {
       s.boundary =
           cross_boundary(path.media, surface.material, dot(surface.ng_world, ray.direction) < 0, scene_.materials);
       if (!s.boundary.seen)
-        return spawn_as(s, ray.direction, {path.pixel, arriving, path.depth, path.kind, s.boundary.after});
+        return spawn_as(s, ray.direction,
+                        {path.pixel, arriving, path.depth, path.kind, s.boundary.after, path.roughness});
     }
     if (alpha < 1) {
       // A texel that is not there at all costs no depth: foliage is made of many of them.
       const uint16_t depth = alpha > 0 ? uint16_t(path.depth + 1) : path.depth;
       spawn_as(s, ray.direction,
-               {path.pixel, arriving * (1 - alpha), depth, view ? RayKind::straight : path.kind, path.media});
+               {path.pixel, arriving * (1 - alpha), depth, view ? RayKind::straight : path.kind, path.media,
+                path.roughness});
     }
     if (alpha == 0) return;
     const Rgb emitted = s.weight * emission(material, table_, inputs);
@@ -121,6 +123,19 @@ class Whitted {
     }
   }
 
+  /// What a ray sees that leaves the scene.
+  [[nodiscard]] Rgb sky(const Path& path, const Vec3f& direction) const {
+    if (!scene_.environment) return scene_.background;
+    const bool view = path.kind == RayKind::camera || path.kind == RayKind::straight;
+    const bool backdrop = scene_.environment->seen ? view && scene_.has_background : path.kind != RayKind::mirror;
+    return backdrop ? scene_.background : environment_radiance(*scene_.environment, direction, path.roughness);
+  }
+
+  /// What a white Lambertian surface reflects of the light without a place.
+  [[nodiscard]] Rgb ambient_light(const Vec3f& n) const {
+    return scene_.environment ? scene_.ambient + environment_diffuse(*scene_.environment, n) : scene_.ambient;
+  }
+
   /// Of what lies beyond the surface to what lies before it.
   static float relative_ior(const Shading& s) {
     return bounds_body(s.material) ? s.boundary.ior_after.g / s.boundary.ior_before.g : s.material.ior;
@@ -133,7 +148,7 @@ class Whitted {
   }
 
   void shade_phong(const Shading& s, const PhongBsdf& bsdf) {
-    radiance_[s.path.pixel] += s.weight * bsdf.ambient * scene_.ambient;
+    radiance_[s.path.pixel] += s.weight * bsdf.ambient * ambient_light(s.n);
     add_lights(s, [&](const Vec3f& to_light) { return reflected_light(bsdf, s.n, to_light, s.b); });
 
     Rgb mirror = bsdf.reflection, through = bsdf.transmission;
@@ -156,25 +171,35 @@ class Whitted {
     const LayerFrames frames = layer_frames(s, bsdf);
     const float share = mirror_share(bsdf.roughness), coat_share = mirror_share(bsdf.clearcoat_roughness);
     const float coat = coat_reflectance(bsdf, frames.coat_n, s.b);
-    // Diffuse ambient light, and for metal and coat the part of the reflection that no mirror ray stands for.
-    const DiffuseAlbedo diffuse = diffuse_albedo(bsdf, frames, s.b);
-    const Rgb rough = bsdf.base_color * (bsdf.metallic * (1 - share) * layers_transmittance(bsdf, frames, s.b)) +
-                      Rgb{coat * (1 - coat_share)};
+    const float left = layers_transmittance(bsdf, frames, s.b);
     radiance_[s.path.pixel] += emitted * (1 - coat);
-    radiance_[s.path.pixel] += s.weight * (diffuse.front + diffuse.back + rough) * scene_.ambient * bsdf.occlusion;
+    const DiffuseAlbedo diffuse = diffuse_albedo(bsdf, frames, s.b);
+    Rgb ambient = diffuse.front * ambient_light(s.n);
+    if (bsdf.diffuse_transmission > 0) ambient += diffuse.back * ambient_light(-s.n);
+    // The part of the reflections that no mirror ray stands for.
+    ambient += rough_reflection(s, bsdf) * (left * (1 - share));
+    if (coat > 0) ambient += blurred(reflect(s.d, frames.coat_n), bsdf.clearcoat_roughness) * (coat * (1 - coat_share));
+    radiance_[s.path.pixel] += s.weight * ambient * bsdf.occlusion;
     add_lights(s, [&](const Vec3f& to_light) { return reflected_light(bsdf, frames, to_light, s.b); });
 
     const Transmission passing = transmission(s, bsdf);
-    const Rgb left{layers_transmittance(bsdf, frames, s.b)};
-    Rgb mirror = left * passing.fresnel * share;
-    const Rgb coat_mirror{coat * coat_share};
-    if (frames.coat_n == s.n)
-      mirror += coat_mirror;
-    else
-      spawn(s, above_surface(s, reflect(s.d, frames.coat_n)), s.weight * coat_mirror, RayKind::mirror, s.path.media);
-    spawn(s, above_surface(s, reflect(s.d, s.n)), s.weight * mirror, RayKind::mirror, s.path.media);
-    const Rgb through = left * (Rgb(1.0f) - passing.fresnel) * bsdf.base_color;
-    spawn_transmitted(s, through * (bsdf.transmission * (1 - bsdf.metallic)), passing);
+    const Rgb through = (Rgb(1.0f) - passing.fresnel) * bsdf.base_color;
+    spawn(s, above_surface(s, reflect(s.d, frames.coat_n)), s.weight * (coat * coat_share), RayKind::mirror,
+          s.path.media, bsdf.clearcoat_roughness);
+    spawn(s, above_surface(s, reflect(s.d, s.n)), s.weight * passing.fresnel * (left * share), RayKind::mirror,
+          s.path.media, bsdf.roughness);
+    spawn_transmitted(s, through * (left * bsdf.transmission * (1 - bsdf.metallic)), passing, bsdf.roughness);
+  }
+
+  /// What a rough surface reflects of the environment; without one, of the ambient light, and then metals only: they
+  /// have no diffuse light to be seen by.
+  [[nodiscard]] Rgb rough_reflection(const Shading& s, const MetallicRoughnessBsdf& bsdf) const {
+    if (!scene_.environment) return bsdf.base_color * bsdf.metallic * scene_.ambient;
+    return specular_albedo(bsdf, std::max(0.0f, dot(s.n, s.b))) * blurred(reflect(s.d, s.n), bsdf.roughness);
+  }
+
+  [[nodiscard]] Rgb blurred(const Vec3f& direction, float roughness) const {
+    return scene_.environment ? environment_radiance(*scene_.environment, direction, roughness) : scene_.ambient;
   }
 
   [[nodiscard]] LayerFrames layer_frames(const Shading& s, const MetallicRoughnessBsdf& bsdf) const {
@@ -223,25 +248,27 @@ class Whitted {
     return t;
   }
 
-  void spawn_transmitted(const Shading& s, const Rgb& share, const Transmission& passing) {
+  void spawn_transmitted(const Shading& s, const Rgb& share, const Transmission& passing, float roughness) {
     const Rgb &before = s.boundary.ior_before, &after = s.boundary.ior_after;
     if (before.r == before.b && after.r == after.b) {
-      if (passing.passes) spawn(s, passing.direction, s.weight * share, RayKind::refracted, passing.media);
+      if (passing.passes) spawn(s, passing.direction, s.weight * share, RayKind::refracted, passing.media, roughness);
       return;
     }
     // A ray for each of red, green and blue; the colours of a ray that was split before go on alone.
     const auto spawn_color = [&](float eta, const Rgb& color) {
       Vec3f refracted;
       if (refract(s.d, s.n, eta, refracted))
-        spawn(s, refracted, s.weight * share * color, RayKind::refracted, passing.media);
+        spawn(s, refracted, s.weight * share * color, RayKind::refracted, passing.media, roughness);
     };
     spawn_color(before.r / after.r, {1, 0, 0});
     spawn_color(before.g / after.g, {0, 1, 0});
     spawn_color(before.b / after.b, {0, 0, 1});
   }
 
-  void spawn(const Shading& s, const Vec3f& direction, const Rgb& weight, RayKind kind, const Media& media) {
-    spawn_as(s, direction, {s.path.pixel, weight, uint16_t(s.path.depth + 1), kind, media});
+  void spawn(const Shading& s, const Vec3f& direction, const Rgb& weight, RayKind kind, const Media& media,
+             float roughness = 0) {
+    const float blur = std::min(1.0f, std::hypot(s.path.roughness, roughness));
+    spawn_as(s, direction, {s.path.pixel, weight, uint16_t(s.path.depth + 1), kind, media, blur});
   }
 
   void spawn_as(const Shading& s, const Vec3f& direction, const Path& path) {

@@ -18,7 +18,8 @@ struct Path {
   Rgb weight{1.0f};
   uint16_t depth = 0;
   RayKind kind = RayKind::camera;
-  Media media{};  // around its origin
+  Media media{};        // around its origin
+  float roughness = 0;  // of the surfaces that sent it here: how blurred it sees the environment
 };
 
 /// A wave of rays on their way to pixels.

@@ -1,0 +1,209 @@
+#include "renderer/environment.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/fork_join.h"
+#include "core/sampling.h"
+#include "materials/microfacet.h"
+
+namespace alhazen {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr int kLevels = 6;
+
+Rgb pixel(const ColorImage& image, int x, int y) {
+  const float* p = image.at(x, y);
+  return {p[0], p[1], p[2]};
+}
+
+Rgb bilinear(const ColorImage& image, const Vec3f& d) {
+  const float u = 0.5f + std::atan2(d.x, -d.z) / (2 * kPi), v = std::acos(std::clamp(d.y, -1.0f, 1.0f)) / kPi;
+  const float x = u * float(image.width) - 0.5f, y = v * float(image.height) - 0.5f;
+  const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
+  const auto column = [&](int k) { return ((k % image.width) + image.width) % image.width; };
+  const auto row = [&](int k) { return std::clamp(k, 0, image.height - 1); };
+  const float s = x - float(x0), t = y - float(y0);
+  return lerp(lerp(pixel(image, column(x0), row(y0)), pixel(image, column(x0 + 1), row(y0)), s),
+              lerp(pixel(image, column(x0), row(y0 + 1)), pixel(image, column(x0 + 1), row(y0 + 1)), s), t);
+}
+
+Vec3f direction_at(int x, int y, int width, int height) {
+  const float phi = (2 * (float(x) + 0.5f) / float(width) - 1) * kPi, theta = (float(y) + 0.5f) / float(height) * kPi;
+  return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
+}
+
+ColorImage blank(int width, int height) {
+  return {width, height, {"R", "G", "B"}, std::vector<float>(size_t(width) * size_t(height) * 3)};
+}
+
+void set_pixel(ColorImage& image, int x, int y, const Rgb& c) {
+  float* p = image.at(x, y);
+  p[0] = c.r, p[1] = c.g, p[2] = c.b;
+}
+
+template <class Color>
+void fill(ColorImage& image, const Color& color) {
+  const ForkJoin order;
+  tbb::parallel_for(0, image.height, order.task([&](int y) {
+    for (int x = 0; x < image.width; ++x) set_pixel(image, x, y, color(x, y));
+  }));
+}
+
+/// Boxes of 2 x 2 pixels; an odd last row or column counts twice.
+ColorImage halved(const ColorImage& image) {
+  ColorImage half = blank(std::max(1, image.width / 2), std::max(1, image.height / 2));
+  fill(half, [&](int x, int y) {
+    const int x1 = std::min(2 * x + 1, image.width - 1), y1 = std::min(2 * y + 1, image.height - 1);
+    const int x0 = std::min(2 * x, x1), y0 = std::min(2 * y, y1);
+    return (pixel(image, x0, y0) + pixel(image, x1, y0) + pixel(image, x0, y1) + pixel(image, x1, y1)) * 0.25f;
+  });
+  return half;
+}
+
+/// Each a quarter of the one before, down to a few pixels.
+std::vector<ColorImage> pyramid(const ColorImage& image) {
+  std::vector<ColorImage> all{image};
+  while (all.back().width > 8) all.push_back(halved(all.back()));
+  return all;
+}
+
+/// The radiance that a GGX lobe about r gathers, seen along r: facets are sampled, and each sample looks as widely as
+/// it stands for (Karis 2013; Krivanek and Colbert, "Real-time Shading with Filtered Importance Sampling", 2008).
+Rgb gathered(const std::vector<ColorImage>& levels, const Vec3f& r, float roughness) {
+  constexpr uint32_t kSamples = 128;
+  const float alpha = roughness * roughness, a2 = alpha * alpha;
+  const ShadingFrame frame = frame_about(r);
+  const float pixel_angle = 4 * kPi / float(levels[0].width * levels[0].height);
+  Rgb sum;
+  float weight = 0;
+  for (uint32_t i = 0; i < kSamples; ++i) {
+    const Vec2f u = sobol_owen(i, 0);
+    const float cos_h = std::sqrt((1 - u.x) / (1 + (a2 - 1) * u.x)),
+                sin_h = std::sqrt(std::max(0.0f, 1 - cos_h * cos_h));
+    const Vec3f h =
+        frame.t * (sin_h * std::cos(2 * kPi * u.y)) + frame.b * (sin_h * std::sin(2 * kPi * u.y)) + frame.n * cos_h;
+    const Vec3f d = normalize(2 * dot(r, h) * h - r);
+    const float cos_d = dot(r, d);
+    if (!(cos_d > 0)) continue;
+    const float q = 1 + (a2 - 1) * cos_h * cos_h;
+    const float probability = a2 / (kPi * q * q) / 4;  // of d: n·h = v·h here
+    const float level = 0.5f * std::log2(std::max(1.0f, 4 / (float(kSamples) * probability * pixel_angle)));
+    sum += bilinear(levels[size_t(std::min(int(level), int(levels.size()) - 1))], d) * cos_d;
+    weight += cos_d;
+  }
+  return weight > 0 ? sum * (1 / weight) : bilinear(levels[0], r);
+}
+
+std::array<float, 9> harmonics_at(const Vec3f& d) {
+  return {0.282095f,
+          0.488603f * d.y,
+          0.488603f * d.z,
+          0.488603f * d.x,
+          1.092548f * d.x * d.y,
+          1.092548f * d.y * d.z,
+          0.315392f * (3 * d.z * d.z - 1),
+          1.092548f * d.x * d.z,
+          0.546274f * (d.x * d.x - d.y * d.y)};
+}
+
+std::array<Rgb, 9> projected(const ColorImage& image) {
+  std::array<Vec3d, 9> sum{};
+  for (int y = 0; y < image.height; ++y) {
+    const float theta = (float(y) + 0.5f) / float(image.height) * kPi;
+    const double angle = double(std::sin(theta) * 2 * kPi * kPi / float(image.width * image.height));
+    for (int x = 0; x < image.width; ++x) {
+      const Rgb c = pixel(image, x, y);
+      const auto basis = harmonics_at(direction_at(x, y, image.width, image.height));
+      for (size_t k = 0; k < 9; ++k)
+        sum[k] += Vec3d(double(c.r), double(c.g), double(c.b)) * (angle * double(basis[k]));
+    }
+  }
+  std::array<Rgb, 9> harmonics;
+  for (size_t k = 0; k < 9; ++k) harmonics[k] = {float(sum[k].x), float(sum[k].y), float(sum[k].z)};
+  return harmonics;
+}
+
+float smooth_edge(float x, float from, float to) {
+  const float t = std::clamp((x - from) / (to - from), 0.0f, 1.0f);
+  return t * t * (3 - 2 * t);
+}
+
+/// A rectangle of light seen from its middle's direction: 1 inside, soft at the edges.
+float soft_box(const Vec3f& d, const Vec3f& middle, float half_width, float half_height) {
+  const Vec3f z = normalize(middle), x = normalize(cross(Vec3f{0, 1, 0}, z)), y = cross(z, x);
+  const float depth = dot(d, z);
+  if (!(depth > 0)) return 0;
+  const float u = std::abs(dot(d, x) / depth), v = std::abs(dot(d, y) / depth);
+  return smooth_edge(half_width - u, -0.06f, 0.06f) * smooth_edge(half_height - v, -0.06f, 0.06f);
+}
+
+Rgb studio_radiance(const Vec3f& d) {
+  const float height = d.y;
+  Rgb c = lerp(Rgb{0.07f, 0.072f, 0.075f}, Rgb{0.18f, 0.182f, 0.185f}, smooth_edge(height, -0.2f, 0.9f));
+  c = lerp(c, Rgb{0.17f, 0.165f, 0.16f}, smooth_edge(-height, 0.15f, 0.6f));  // the floor
+  c += Rgb{2.4f, 2.35f, 2.28f} * soft_box(d, {-0.8f, 0.75f, 0.55f}, 0.45f, 0.35f);
+  c += Rgb{0.8f, 0.84f, 0.9f} * soft_box(d, {1.0f, 0.25f, 0.5f}, 0.25f, 0.6f);
+  c += Rgb{1.6f} * soft_box(d, {0.45f, 0.5f, -0.9f}, 0.5f, 0.12f);
+  return c;
+}
+
+}  // namespace
+
+Environment make_environment(ColorImage image) {
+  Environment environment;
+  const std::vector<ColorImage> source = pyramid(image);
+  // Degree 2 needs no more than some dozens of pixels.
+  const auto small = std::find_if(source.begin(), source.end(), [](const ColorImage& i) { return i.width <= 128; });
+  environment.harmonics = projected(small == source.end() ? source.back() : *small);
+  environment.levels.push_back(std::move(image));
+  for (int k = 1; k < kLevels; ++k) {
+    const int width = std::max(32, 512 >> k);
+    ColorImage level = blank(width, width / 2);
+    const float roughness = float(k) / (kLevels - 1);
+    fill(level, [&](int x, int y) { return gathered(source, direction_at(x, y, width, width / 2), roughness); });
+    environment.levels.push_back(std::move(level));
+  }
+  return environment;
+}
+
+Rgb environment_radiance(const Environment& environment, const Vec3f& direction_world, float roughness) noexcept {
+  const Vec3f d = transform_vector(environment.environment_from_world, direction_world);
+  const float x = std::clamp(roughness, 0.0f, 1.0f) * float(environment.levels.size() - 1);
+  const size_t k = std::min(size_t(x), environment.levels.size() - 1);
+  const Rgb sharp = bilinear(environment.levels[k], d);
+  const float t = x - float(k);
+  if (!(t > 0)) return sharp * environment.strength;
+  return lerp(sharp, bilinear(environment.levels[k + 1], d), t) * environment.strength;
+}
+
+Rgb environment_diffuse(const Environment& environment, const Vec3f& n_world) noexcept {
+  // The cosine lobe's factors by degree, over pi.
+  constexpr std::array<float, 9> kLobe{1, 2 / 3.0f, 2 / 3.0f, 2 / 3.0f, 0.25f, 0.25f, 0.25f, 0.25f, 0.25f};
+  const auto basis = harmonics_at(transform_vector(environment.environment_from_world, n_world));
+  Rgb sum;
+  for (size_t k = 0; k < 9; ++k) sum += environment.harmonics[k] * (basis[k] * kLobe[k]);
+  const auto positive = [&](float c) { return std::max(0.0f, c * environment.strength); };
+  return {positive(sum.r), positive(sum.g), positive(sum.b)};
+}
+
+Environment studio_environment(const Vec3d& forward_world) {
+  ColorImage image = blank(512, 256);
+  fill(image, [](int x, int y) { return studio_radiance(direction_at(x, y, 512, 256)); });
+  Environment environment = make_environment(std::move(image));
+  environment.seen = false;
+  // Turned about y until the studio's +z points at the camera.
+  Vec3d z{-forward_world.x, 0, -forward_world.z};
+  if (!(dot(z, z) > 1e-12)) z = {0, 0, 1};
+  z = normalize(z);
+  const Vec3d x = cross(Vec3d{0, 1, 0}, z);
+  // Rows of the rotation from the world are the studio's axes in it.
+  environment.environment_from_world = {{float(x.x), 0, float(z.x)}, {0, 1, 0}, {float(x.z), 0, float(z.z)}, {}};
+  return environment;
+}
+
+}  // namespace alhazen
