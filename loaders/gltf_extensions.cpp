@@ -62,6 +62,10 @@ constexpr KnownExtension kKnown[] = {
 
 std::span<const KnownExtension> known_extensions() { return kKnown; }
 
+bool is_known(const std::string& name) {
+  return std::any_of(std::begin(kKnown), std::end(kKnown), [&](const KnownExtension& e) { return e.name == name; });
+}
+
 Extension treat_extension(const std::string& name, bool required) {
   const auto* known =
       std::find_if(std::begin(kKnown), std::end(kKnown), [&](const KnownExtension& e) { return e.name == name; });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "loaders/gltf.h"
@@ -16,6 +17,8 @@ struct KnownExtension {
 
 /// In alphabetical order. docs/gltf.md has the same table.
 [[nodiscard]] std::span<const KnownExtension> known_extensions();
+
+[[nodiscard]] bool is_known(const std::string& name);
 
 /// One that the file names; ignored if it is not known.
 [[nodiscard]] Extension treat_extension(const std::string& name, bool required);

@@ -12,7 +12,18 @@ namespace {
 
 using nlohmann::json;
 
-/// What the file names, each once. Whatever it requires, there is a picture: what is not known is left out of it.
+/// Whether anything in the document has the extension.
+bool is_used(const json& value, const std::string& extension) {
+  if (value.is_object()) {
+    const auto extensions = value.find("extensions");
+    if (extensions != value.end() && extensions->is_object() && extensions->contains(extension)) return true;
+  }
+  return (value.is_object() || value.is_array()) &&
+         std::any_of(value.begin(), value.end(), [&](const json& child) { return is_used(child, extension); });
+}
+
+/// What the file names, each once. A required one that is not known is an error where something has it; where nothing
+/// does, there is nothing to misread, and a warning has to do.
 std::vector<Extension> read_extensions(const JsonRef& root, Warnings& warn) {
   std::vector<Extension> all;
   const auto add = [&](const std::string& name, bool required) {
@@ -24,7 +35,12 @@ std::vector<Extension> read_extensions(const JsonRef& root, Warnings& warn) {
     const auto same = [&](const JsonRef& other) { return other.value() == r.value(); };
     add(r.as<std::string>(), std::any_of(required.begin(), required.end(), same));
   }
-  for (const JsonRef& r : required) add(r.as<std::string>(), true);
+  for (const JsonRef& r : required) {
+    const auto name = r.as<std::string>();
+    if (!is_known(name) && is_used(root.value(), name))
+      r.fail("requires the extension " + name + ", which is not supported");
+    add(name, true);
+  }
   std::string ignored;
   for (const Extension& e : all) {
     if (e.treatment != Treatment::ignored) continue;

@@ -288,7 +288,16 @@ TEST(GltfErrors, AnExtensionThatIsMerelyUsedGivesOneWarning) {
   EXPECT_EQ(loaded.loaded.extensions[1].treatment, Treatment::supported);
 }
 
-TEST(GltfErrors, AnExtensionThatIsRequiredButNotKnownGivesAWarningAndAPicture) {
+TEST(GltfErrors, AnExtensionThatIsRequiredAndUsedButNotKnownIsAnError) {
+  json document = everything();
+  document["extensionsRequired"].push_back("ACME_unheard");
+  document["materials"][0]["extensions"]["ACME_unheard"] = json::object();
+  const std::string error = error_of(document);
+  EXPECT_TRUE(error.starts_with("/extensionsRequired/"));
+  EXPECT_TRUE(error.ends_with(": requires the extension ACME_unheard, which is not supported"));
+}
+
+TEST(GltfErrors, AnExtensionThatIsRequiredButNotKnownGivesAWarningWhereNothingHasIt) {
   json document = everything();
   document["extensionsRequired"].push_back("ACME_unheard");
   const Loaded loaded = load_json(document);
