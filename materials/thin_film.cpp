@@ -56,9 +56,7 @@ Rgb by_channel(const Rgb& c, const Function& f) {
 
 }  // namespace
 
-Rgb thin_film_fresnel(float cos_theta, float film_ior, float thickness_nm, const Rgb& base_f0) noexcept {
-  // Where the film ends, its index fades to air's, so that nothing jumps.
-  const float film = kAir + (film_ior - kAir) * smoothstep(30, thickness_nm);
+Rgb thin_film_fresnel(float cos_theta, float film, float thickness_nm, const Rgb& base_f0) noexcept {
   const float cos2_inside = 1 - square(kAir / film) * (1 - cos_theta * cos_theta);
   if (cos2_inside < 0) return Rgb{1.0f};
   const float cos_inside = std::sqrt(cos2_inside);
@@ -79,7 +77,9 @@ Rgb thin_film_fresnel(float cos_theta, float film_ior, float thickness_nm, const
     order *= by_channel(r123, [](float r) { return std::sqrt(r); });
     sum += order * (2 * srgb_primaries(sensitivity(float(m) * path_difference, phi * float(m))));
   }
-  return by_channel(sum, [](float c) { return std::min(std::max(c, 0.0f), 1.0f); });
+  const Rgb reflected = by_channel(sum, [](float c) { return std::min(std::max(c, 0.0f), 1.0f); });
+  // Where the film ends it fades, so that nothing jumps.
+  return lerp(fresnel_schlick(base_f0, 1, cos_theta), reflected, smoothstep(30, thickness_nm));
 }
 
 }  // namespace alhazen

@@ -203,11 +203,11 @@ TEST(Phong, Terms) {
   const Vec3f n{0, 0, 1};
   const float theta = 0.6f, off = 0.3f;
   const Vec3f s = direction(theta, 0);
-  const Rgb mirror = reflected_light(bsdf, LayerFrames{n}, s, direction(theta, kPi));
+  const Rgb mirror = reflected_light(bsdf, n, s, direction(theta, kPi));
   EXPECT_NEAR(mirror.r, 0.6f * std::cos(theta) + 0.5f, 1e-5f);
-  const Rgb aside = reflected_light(bsdf, LayerFrames{n}, s, direction(theta + off, kPi));
+  const Rgb aside = reflected_light(bsdf, n, s, direction(theta + off, kPi));
   EXPECT_NEAR(aside.r, 0.6f * std::cos(theta) + 0.5f * std::pow(std::cos(off), 10.0f), 1e-5f);
-  EXPECT_EQ(reflected_light(bsdf, LayerFrames{n}, -s, direction(theta, kPi)), Rgb{});
+  EXPECT_EQ(reflected_light(bsdf, n, -s, direction(theta, kPi)), Rgb{});
 }
 
 TEST(MetallicRoughness, DielectricWithoutSpecularIsLambert) {
