@@ -12,18 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Whether anything in the document has the extension.
-bool is_used(const json& value, const std::string& extension) {
-  if (value.is_object()) {
-    const auto extensions = value.find("extensions");
-    if (extensions != value.end() && extensions->is_object() && extensions->contains(extension)) return true;
-  }
-  return (value.is_object() || value.is_array()) &&
-         std::any_of(value.begin(), value.end(), [&](const json& child) { return is_used(child, extension); });
-}
-
-/// What the file names, each once. A required one that is not known is an error where something has it; where nothing
-/// does, there is nothing to misread, and a warning has to do.
+/// What the file names, each once. A required one that is not known is an error; of one that is known and ignored, what
+/// it brings is left out of the picture, with a warning.
 std::vector<Extension> read_extensions(const JsonRef& root, Warnings& warn) {
   std::vector<Extension> all;
   const auto add = [&](const std::string& name, bool required) {
@@ -37,8 +27,7 @@ std::vector<Extension> read_extensions(const JsonRef& root, Warnings& warn) {
   }
   for (const JsonRef& r : required) {
     const auto name = r.as<std::string>();
-    if (!is_known(name) && is_used(root.value(), name))
-      r.fail("requires the extension " + name + ", which is not supported");
+    if (!is_known(name)) r.fail("requires the extension " + name + ", which is not supported");
     add(name, true);
   }
   std::string ignored;
