@@ -75,7 +75,7 @@ std::vector<ColorImage> pyramid(const ColorImage& image) {
 /// The radiance that a GGX lobe about r gathers, seen along r: facets are sampled, and each sample looks as widely as
 /// it stands for (Karis 2013; Krivanek and Colbert, "Real-time Shading with Filtered Importance Sampling", 2008).
 Rgb gathered(const std::vector<ColorImage>& levels, const Vec3f& r, float roughness) {
-  constexpr uint32_t kSamples = 128;
+  constexpr uint32_t kSamples = 64;
   const float alpha = roughness * roughness, a2 = alpha * alpha;
   const ShadingFrame frame = frame_about(r);
   const float pixel_angle = 4 * kPi / float(levels[0].width * levels[0].height);
@@ -162,7 +162,7 @@ Environment make_environment(ColorImage image) {
   environment.harmonics = projected(small == source.end() ? source.back() : *small);
   environment.levels.push_back(std::move(image));
   for (int k = 1; k < kLevels; ++k) {
-    const int width = std::max(32, 512 >> k);
+    const int width = std::max(32, 256 >> k);
     ColorImage level = blank(width, width / 2);
     const float roughness = float(k) / (kLevels - 1);
     fill(level, [&](int x, int y) { return gathered(source, direction_at(x, y, width, width / 2), roughness); });
@@ -192,8 +192,9 @@ Rgb environment_diffuse(const Environment& environment, const Vec3f& n_world) no
 }
 
 Environment studio_environment(const Vec3d& forward_world) {
-  ColorImage image = blank(512, 256);
-  fill(image, [](int x, int y) { return studio_radiance(direction_at(x, y, 512, 256)); });
+  constexpr int kWidth = 256;
+  ColorImage image = blank(kWidth, kWidth / 2);
+  fill(image, [](int x, int y) { return studio_radiance(direction_at(x, y, kWidth, kWidth / 2)); });
   Environment environment = make_environment(std::move(image));
   environment.seen = false;
   // Turned about y until the studio's +z points at the camera.

@@ -20,7 +20,7 @@ struct Environment {
   bool seen = true;                 // by rays that come straight from the camera, and refracted ones
 };
 
-/// Prefilters an image of at least 1 x 1 pixels, finite and not negative: 0.1 s for the usual sizes.
+/// Prefilters an image of at least 1 x 1 pixels, finite and not negative.
 [[nodiscard]] Environment make_environment(ColorImage image);
 
 /// What a lobe of that roughness in [0, 1] about a unit direction sees; a mirror at 0. Interpolates linearly.
