@@ -41,7 +41,7 @@ expect 2 rendr "$scene"
 expect 2
 expect 3 render "$work/absent.gltf" -o "$work/a.png"
 expect 3 render "$work/truncated.gltf" -o "$work/a.png"
-expect 0 render "$work/required.gltf" -o "$work/a.png"
+expect 3 render "$work/required.gltf" -o "$work/a.png"
 expect 4 render "$scene" -o "$work/absent/a.png"
 expect 4 render "$scene" -o "$work"
 expect 4 render "$scene" -o "$work/a.unheard"
