@@ -204,7 +204,7 @@ Command add_crosscheck_command(CLI::App& program) {
       "Examples:\n"
       "  alhazen crosscheck --shape sphere --population silhouette --rays 1e6\n"
       "  alhazen crosscheck --shape all --rays 1e6\n"
-      "  alhazen crosscheck scene.gltf --json disagreements.jsonl\n"
+      "  alhazen crosscheck scene.gltf --json disagreements.jsonl --map where.png\n"
       "  alhazen crosscheck --intersector ./naive_sphere.so --json errors.jsonl");
   return {command, [arguments] { return run_crosscheck(*arguments); }};
 }

@@ -34,12 +34,18 @@ class EmbreeScene {
   /// Commits, attaches and releases the geometry.
   void attach(RTCGeometry g) { attach_to(scene_, g); }
   /// The same through an instance.
-  void attach_instance(RTCGeometry g, const Affine3f& m, bool robust) {
+  void attach_instance(RTCGeometry g, const Affine3f& m, bool robust) { attach_instance(new_inner(g, robust), m); }
+
+  /// A scene of one geometry, to be placed any number of times. It lives as long as this.
+  [[nodiscard]] RTCScene new_inner(RTCGeometry g, bool robust) {
     inner_.push_back(new_scene(robust));
     attach_to(inner_.back(), g);
     rtcCommitScene(inner_.back());
+    return inner_.back();
+  }
+  void attach_instance(RTCScene inner, const Affine3f& m) {
     RTCGeometry instance = embree::new_geometry(device(), RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(instance, inner_.back());
+    rtcSetGeometryInstancedScene(instance, inner);
     const float columns[12] = {m.x.x, m.x.y, m.x.z, m.y.x,      m.y.y,      m.y.z,
                                m.z.x, m.z.y, m.z.z, m.origin.x, m.origin.y, m.origin.z};
     rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);

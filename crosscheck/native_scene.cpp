@@ -1,5 +1,7 @@
 #include "crosscheck/native_scene.h"
 
+#include <map>
+
 #include "crosscheck/native_geometry.h"
 
 namespace alhazen::crosscheck {
@@ -20,7 +22,15 @@ const SceneAnswer& nearer(const SceneAnswer& a, const SceneAnswer& b) {
 
 struct NativeScene::Impl {
   EmbreeScene scene{true};
-  std::vector<uint32_t> object_of_geometry;  // by top-level geometry number
+  std::vector<uint32_t> object_of_geometry;     // by top-level geometry number
+  std::map<uint32_t, RTCScene> scene_of_shape;  // null: Embree has no such geometry
+
+  RTCScene shape_scene(uint32_t shape, const Surface& surface) {
+    const auto [found, is_new] = scene_of_shape.try_emplace(shape, nullptr);
+    if (!is_new) return found->second;
+    if (RTCGeometry g = new_native_geometry(scene.device(), surface)) found->second = scene.new_inner(g, true);
+    return found->second;
+  }
 };
 
 NativeScene::NativeScene(const SceneBoxes& boxes) : impl_(std::make_unique<Impl>()) {
@@ -34,14 +44,13 @@ void NativeScene::add_object(const SceneBoxes& boxes, uint32_t number) {
   const std::optional<NativeSubject> native = native_subject(given_subject(boxes, number));
   if (!native) return void(rounded_ = true);
   const Affine3d& m = native->subject.world_from_object;
-  const bool shape = is_shape(boxes.geometry(), number);
-  RTCGeometry g = shape ? new_native_geometry(impl_->scene.device(), native->subject.surface) : nullptr;
-  if (shape && !g) return;
-  object = Object{m, inverse(m), shape ? std::make_unique<Subject>(native->subject) : nullptr};
   rounded_ = rounded_ || native->rounded;
-  if (!g) return;
+  if (!is_shape(boxes.geometry(), number)) return void(object = Object{m, inverse(m), nullptr});
+  RTCScene scene = impl_->shape_scene(shape_instance(boxes.geometry(), number).shape, native->subject.surface);
+  if (!scene) return;
+  object = Object{m, inverse(m), std::make_unique<Subject>(native->subject)};
   impl_->object_of_geometry.push_back(number);
-  impl_->scene.attach_instance(g, Affine3f(m), true);
+  impl_->scene.attach_instance(scene, Affine3f(m));
 }
 
 bool NativeScene::answers_for(uint32_t number, const Rayf& ray) const {
