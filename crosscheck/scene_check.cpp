@@ -24,9 +24,9 @@ Geometry shapes_of(const Geometry& geometry) {
 
 /// A hierarchy of the meshes alone, which it reads in place.
 std::unique_ptr<AcceleratedScene> mesh_scene(Geometry& geometry) {
-  const auto shapes = std::exchange(geometry.shape_instances, {});
+  auto shapes = std::exchange(geometry.shape_instances, {});
   auto scene = std::make_unique<AcceleratedScene>(geometry, SurfaceFilter{});
-  geometry.shape_instances = shapes;  // their objects come after those of meshes
+  geometry.shape_instances = std::move(shapes);  // their objects come after those of meshes
   return scene;
 }
 
@@ -122,7 +122,7 @@ struct SceneCheck::Impl {
 
   [[nodiscard]] double facing(const SceneTruth& truth, const Rayf& ray) const {
     if (!truth.nearest.hit) return 0;
-    const Affine3d& m = boxes.subject(truth.first()).world_from_object;
+    const Affine3d& m = boxes.world_from_object(truth.first().object);
     const Vec3d n_world = normalize(transform_normal(m, truth.nearest.normal_object));
     return std::abs(dot(n_world, normalize(Vec3d(ray.direction))));
   }
