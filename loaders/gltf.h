@@ -17,6 +17,8 @@ struct EncodedImage {
   // Where it has none of its own: the roughness 1 - glossiness_factor x alpha of this image.
   uint32_t glossiness_of = kNone;
   float glossiness_factor = 1;
+  bool mipmaps = false;                   // a sampler asks for them
+  ColorSpace space = ColorSpace::linear;  // in which they are averaged
 };
 
 /// What of a file is wanted. Each is a name or an index; empty: the file's default.

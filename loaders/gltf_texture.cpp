@@ -24,6 +24,16 @@ uint32_t image_of(const JsonRef& texture) {
   return texture.get("source", kNone);
 }
 
+void set_minification(int mode, Texture& t) {
+  t.nearest_small = mode == TINYGLTF_TEXTURE_FILTER_NEAREST || mode == TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST ||
+                    mode == TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR;
+  if (mode == TINYGLTF_TEXTURE_FILTER_NEAREST || mode == TINYGLTF_TEXTURE_FILTER_LINEAR)
+    t.mipmaps = Mipmaps::none;
+  else if (mode == TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST ||
+           mode == TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST)
+    t.mipmaps = Mipmaps::nearest;
+}
+
 Texture read_texture(const GltfSource& source, const JsonRef& r) {
   Texture t;
   t.image = image_of(r);
@@ -32,6 +42,7 @@ Texture read_texture(const GltfSource& source, const JsonRef& r) {
     t.wrap_u = wrap_of(sampler.wrapS);
     t.wrap_v = wrap_of(sampler.wrapT);
     t.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+    set_minification(sampler.minFilter, t);
   }
   return t;
 }
@@ -61,6 +72,20 @@ void warn_of_missing_image(GltfSource& source, const JsonRef& texture) {
     source.warn(texture.pointer(), "left out: it has no image that can be decoded here");
 }
 
+/// Tells the images which mip levels their textures want. Phong's are sampled without.
+void mark_mipmaps(const GltfMaterials& materials, GltfTextures& all) {
+  for (const Texture& t : all.textures)
+    if (t.image != kNone && t.mipmaps != Mipmaps::none) all.images[t.image].mipmaps = true;
+  const auto mark_color = [&](const TextureUse& use) {
+    if (!use || all.textures[use.texture].image == kNone) return;
+    all.images[all.textures[use.texture].image].space = ColorSpace::srgb;
+  };
+  for (const Material& m : materials.materials)
+    for (const TextureUse& use : {m.base_color_texture, m.emissive_texture, m.specular_color_texture,
+                                  m.sheen.color_texture, m.diffuse_transmission.color_texture})
+      mark_color(use);
+}
+
 }  // namespace
 
 GltfTextures read_textures(GltfSource& source, const GltfBuffers& buffers, const GltfMaterials& materials) {
@@ -87,6 +112,7 @@ GltfTextures read_textures(GltfSource& source, const GltfBuffers& buffers, const
     all.textures.push_back(texture);
     all.images.push_back(std::move(image));
   }
+  mark_mipmaps(materials, all);
   return all;
 }
 

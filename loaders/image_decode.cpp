@@ -17,6 +17,7 @@
 
 #include "core/fork_join.h"
 #include "loaders/image_ktx.h"
+#include "materials/mipmap.h"
 
 namespace alhazen {
 namespace {
@@ -69,7 +70,7 @@ TextureImage decode(const std::vector<uint8_t>& bytes) {
 
 /// One channel, as many bits as the glossiness has.
 TextureImage roughness_image(const TextureImage& glossiness, float factor) {
-  TextureImage image{glossiness.width, glossiness.height, 1, {}};
+  TextureImage image{glossiness.width, glossiness.height, 1, {}, {}};
   const auto n = size_t(glossiness.channels);
   std::visit(
       [&](const auto& in) {
@@ -101,6 +102,7 @@ std::vector<TextureImage> decode_images(const std::vector<EncodedImage>& encoded
     };
     try {
       images[i] = decode(encoded[i].bytes);
+      if (encoded[i].mipmaps) add_smaller_levels(images[i], encoded[i].space);
     } catch (const std::bad_alloc&) {
       failed("out of memory");
     } catch (const std::exception& error) {
@@ -110,8 +112,10 @@ std::vector<TextureImage> decode_images(const std::vector<EncodedImage>& encoded
     }
   }));
   for (size_t i = 0; i < encoded.size(); ++i)
-    if (const uint32_t from = encoded[i].glossiness_of; from != kNone && images[from].width > 0)
+    if (const uint32_t from = encoded[i].glossiness_of; from != kNone && images[from].width > 0) {
       images[i] = roughness_image(images[from], encoded[i].glossiness_factor);
+      if (encoded[i].mipmaps) add_smaller_levels(images[i], ColorSpace::linear);
+    }
   return images;
 }
 

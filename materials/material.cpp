@@ -4,7 +4,7 @@ namespace alhazen {
 namespace {
 
 Rgba base_color(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) {
-  const Rgba texel = sample(table, material.base_color_texture, ColorSpace::srgb, inputs.uvs, inputs.uv_count);
+  const Rgba texel = sample(table, material.base_color_texture, ColorSpace::srgb, inputs);
   return {material.base_color.rgb * texel.rgb * inputs.color.rgb, material.base_color.a * texel.a * inputs.color.a};
 }
 
@@ -40,7 +40,7 @@ bool has_texels(const TextureTable& table, const TextureUse& use) {
 }
 
 Rgb half_thickness_transmittance(const Volume& volume, const TextureTable& table, const SurfaceInputs& inputs) {
-  const float texel = sample(table, volume.thickness_texture, ColorSpace::linear, inputs.uvs, inputs.uv_count).rgb.g;
+  const float texel = sample(table, volume.thickness_texture, ColorSpace::linear, inputs).rgb.g;
   const Rgb sigma = attenuation_per_metre(volume);
   const float distance = volume.thickness * texel / 2;
   return {std::exp(-sigma.r * distance), std::exp(-sigma.g * distance), std::exp(-sigma.b * distance)};
@@ -61,8 +61,7 @@ Rgb straight_transmittance(const Material& material, const TextureTable& table, 
   if (transmits && material.model == ShadingModel::phong) {
     t = material.phong.transmission;
   } else if (transmits) {
-    const float texel =
-        sample(table, material.transmission_texture, ColorSpace::linear, inputs.uvs, inputs.uv_count).rgb.r;
+    const float texel = sample(table, material.transmission_texture, ColorSpace::linear, inputs).rgb.r;
     t = base.rgb * std::clamp(material.transmission * texel, 0.0f, 1.0f);
     if (material.volume.is_body()) t *= half_thickness_transmittance(material.volume, table, inputs);
   }
@@ -78,15 +77,14 @@ Rgb emission(const Material& material, const TextureTable& table, const SurfaceI
   // KHR_materials_unlit: the base colour is all there is to see, whatever the lights and emissiveFactor.
   if (material.model == ShadingModel::unlit) return base_color(material, table, inputs).rgb;
   if (!(max_component(material.emissive) > 0)) return {};
-  return material.emissive *
-         sample(table, material.emissive_texture, ColorSpace::srgb, inputs.uvs, inputs.uv_count).rgb;
+  return material.emissive * sample(table, material.emissive_texture, ColorSpace::srgb, inputs).rgb;
 }
 
 Vec3f tangent_space_normal(const TextureUse& texture, float scale, const TextureTable& table,
                            const SurfaceInputs& inputs) noexcept {
   constexpr Vec3f kUp{0, 0, 1};
   if (!has_texels(table, texture)) return kUp;
-  const Rgb texel = sample(table, texture, ColorSpace::linear, inputs.uvs, inputs.uv_count).rgb;
+  const Rgb texel = sample(table, texture, ColorSpace::linear, inputs).rgb;
   const Vec3f n{(2 * texel.r - 1) * scale, (2 * texel.g - 1) * scale, 2 * texel.b - 1};
   return n.z > 0 && std::isfinite(dot(n, n)) ? normalize(n) : kUp;
 }
@@ -94,7 +92,7 @@ Vec3f tangent_space_normal(const TextureUse& texture, float scale, const Texture
 float anisotropy_angle(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept {
   const Anisotropy& a = material.anisotropy;
   if (!has_texels(table, a.texture)) return a.rotation;
-  const Rgb texel = sample(table, a.texture, ColorSpace::linear, inputs.uvs, inputs.uv_count).rgb;
+  const Rgb texel = sample(table, a.texture, ColorSpace::linear, inputs).rgb;
   return a.rotation + std::atan2(2 * texel.g - 1, 2 * texel.r - 1);
 }
 

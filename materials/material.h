@@ -109,13 +109,6 @@ struct Material {
   PhongParameters phong;  // read where model is phong
 };
 
-/// What a surface brings to a material: interpolated at the hit.
-struct SurfaceInputs {
-  const Vec2f* uvs = nullptr;
-  int uv_count = 0;
-  Rgba color;  // vertex colour; white where the mesh has none
-};
-
 /// Coverage of the surface at a point: 1 for OPAQUE, 0 or 1 for MASK, else the base colour's alpha in [0, 1].
 /// Base-colour factor x texture x vertex colour, as glTF says.
 [[nodiscard]] float coverage(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept;

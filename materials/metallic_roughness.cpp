@@ -58,12 +58,8 @@ float sheen_transmittance(const MetallicRoughnessBsdf& bsdf, float cos_theta) {
 
 MetallicRoughnessBsdf metallic_roughness_bsdf(const Material& material, const TextureTable& table,
                                               const SurfaceInputs& inputs, float relative_ior) noexcept {
-  const auto linear = [&](const TextureUse& use) {
-    return sample(table, use, ColorSpace::linear, inputs.uvs, inputs.uv_count);
-  };
-  const auto srgb = [&](const TextureUse& use) {
-    return sample(table, use, ColorSpace::srgb, inputs.uvs, inputs.uv_count).rgb;
-  };
+  const auto linear = [&](const TextureUse& use) { return sample(table, use, ColorSpace::linear, inputs); };
+  const auto srgb = [&](const TextureUse& use) { return sample(table, use, ColorSpace::srgb, inputs).rgb; };
   const Rgb metal_rough = linear(material.metallic_roughness_texture).rgb;
   const float specular = unit(material.specular * linear(material.specular_texture).a);
   const float root = relative_ior == 0 ? 1 : (relative_ior - 1) / (relative_ior + 1);

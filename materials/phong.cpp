@@ -4,8 +4,10 @@ namespace alhazen {
 
 PhongBsdf phong_bsdf(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept {
   const PhongParameters& p = material.phong;
+  SurfaceInputs point = inputs;  // the model knows no mipmaps
+  point.footprint = 0;
   const auto textured = [&](const Rgb& factor, const TextureUse& use) {
-    return factor * inputs.color.rgb * sample(table, use, ColorSpace::srgb, inputs.uvs, inputs.uv_count).rgb;
+    return factor * inputs.color.rgb * sample(table, use, ColorSpace::srgb, point).rgb;
   };
   return {textured(p.ambient, p.ambient_texture),
           textured(p.diffuse, p.diffuse_texture),

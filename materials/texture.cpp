@@ -83,10 +83,23 @@ Rgba filter(const TextureImage& image, const std::vector<T>& samples, const Texe
   return mix(mix(at(x.a, y.a), at(x.b, y.a), x.t), mix(at(x.a, y.b), at(x.b, y.b), x.t), y.t);
 }
 
+Rgba at_level(const TextureImage& image, const Texture& texture, ColorSpace space, double u, double v, bool nearest) {
+  const TexelPair x = neighbours(u, texture.wrap_u, image.width, nearest);
+  const TexelPair y = neighbours(v, texture.wrap_v, image.height, nearest);
+  return std::visit([&](const auto& samples) { return filter(image, samples, x, y, space, nearest); }, image.samples);
+}
+
+/// The mip level at which a texel is as large as the footprint; 0 or less where a texel is larger.
+float level_of(const TextureImage& image, const TextureUse& use, const SurfaceInputs& inputs) {
+  if (!(inputs.footprint > 0) || !inputs.uv_per_metre || int64_t{use.uv_set} >= inputs.uv_count) return 0;
+  const float scale = std::sqrt(std::abs(use.xx * use.yy - use.xy * use.yx) * float(image.width) * float(image.height));
+  const float texels = inputs.footprint * inputs.uv_per_metre[use.uv_set] * scale;
+  return texels > 1 ? std::log2(std::min(texels, 1e9f)) : 0;
+}
+
 }  // namespace
 
-Rgba sample(const TextureTable& table, const TextureUse& use, ColorSpace space, const Vec2f* uvs,
-            int uv_count) noexcept {
+Rgba sample(const TextureTable& table, const TextureUse& use, ColorSpace space, const SurfaceInputs& inputs) noexcept {
   const Rgba white{Rgb{1.0f}, 1.0f};
   if (!use || !table.textures || !table.images || use.texture >= table.textures->size()) return white;
   const Texture& texture = (*table.textures)[use.texture];
@@ -95,21 +108,25 @@ Rgba sample(const TextureTable& table, const TextureUse& use, ColorSpace space, 
   if (image.width <= 0 || image.height <= 0 || image.channels < 1 || image.channels > 4) return white;
 
   double u = 0, v = 0;
-  if (uvs && int64_t{use.uv_set} < uv_count) {
-    const Vec2f uv = uvs[use.uv_set];
+  if (inputs.uvs && int64_t{use.uv_set} < inputs.uv_count) {
+    const Vec2f uv = inputs.uvs[use.uv_set];
     if (std::isfinite(uv.x) && std::isfinite(uv.y)) u = double(uv.x), v = double(uv.y);
   }
   double tu = double(use.xx) * u + double(use.xy) * v + double(use.x0);
   double tv = double(use.yx) * u + double(use.yy) * v + double(use.y0);
   if (!std::isfinite(tu) || !std::isfinite(tv)) tu = tv = 0;
 
-  const TexelPair x = neighbours(tu, texture.wrap_u, image.width, texture.nearest);
-  const TexelPair y = neighbours(tv, texture.wrap_v, image.height, texture.nearest);
-  if (const auto* bytes = std::get_if<std::vector<uint8_t>>(&image.samples))
-    return filter(image, *bytes, x, y, space, texture.nearest);
-  if (const auto* words = std::get_if<std::vector<uint16_t>>(&image.samples))
-    return filter(image, *words, x, y, space, texture.nearest);
-  return filter(image, *std::get_if<std::vector<float>>(&image.samples), x, y, space, texture.nearest);
+  const auto look_up = [&](size_t level, bool nearest) {
+    return at_level(level == 0 ? image : image.smaller[level - 1], texture, space, tu, tv, nearest);
+  };
+  const float level = texture.mipmaps == Mipmaps::none ? 0 : level_of(image, use, inputs);
+  if (!(level > 0) || image.smaller.empty()) return look_up(0, texture.nearest);
+  const float last = float(image.smaller.size());
+  if (texture.mipmaps == Mipmaps::nearest)
+    return look_up(size_t(std::min(std::round(level), last)), texture.nearest_small);
+  const auto below = size_t(std::min(level, last));
+  if (float(below) >= last) return look_up(image.smaller.size(), texture.nearest_small);
+  return mix(look_up(below, texture.nearest_small), look_up(below + 1, texture.nearest_small), level - float(below));
 }
 
 float linear_from_srgb(float encoded) noexcept {

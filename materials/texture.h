@@ -17,15 +17,21 @@ namespace alhazen {
 struct TextureImage {
   int width = 0, height = 0, channels = 0;
   std::variant<std::vector<uint8_t>, std::vector<uint16_t>, std::vector<float>> samples;
+  std::vector<TextureImage> smaller;  // mip levels 1, 2, ...; empty: level 0 is all there is
 };
 
 enum class Wrap : uint8_t { repeat, mirrored_repeat, clamp_to_edge };
 
-/// A glTF texture: an image and its sampler. Minification does not switch to mipmaps: level 0 is always sampled.
+/// How a sampler goes from one mip level to the next.
+enum class Mipmaps : uint8_t { none, nearest, linear };
+
+/// A glTF texture: an image and its sampler.
 struct Texture {
   uint32_t image = kNone;  // into Scene::images; kNone reads as opaque white
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-  bool nearest = false;  // magFilter NEAREST; else bilinear
+  bool nearest = false;        // magFilter NEAREST; else bilinear
+  bool nearest_small = false;  // minFilter NEAREST, NEAREST_MIPMAP_...; else bilinear
+  Mipmaps mipmaps = Mipmaps::linear;
 };
 
 /// A material's use of a texture (glTF textureInfo with KHR_texture_transform).
@@ -40,20 +46,29 @@ struct TextureUse {
 
 enum class ColorSpace : uint8_t { linear, srgb };
 
+/// What a surface brings to a material: interpolated at the hit.
+struct SurfaceInputs {
+  const Vec2f* uvs = nullptr;
+  int uv_count = 0;
+  Rgba color;                           // vertex colour; white where the mesh has none
+  float footprint = 0;                  // metres of the surface that a look-up stands for; 0: a point
+  const float* uv_per_metre = nullptr;  // for each of `uvs`; none: unknown, a point is looked up
+};
+
 /// What texture look-ups read; views into a Scene.
 struct TextureTable {
   const std::vector<Texture>* textures = nullptr;
   const std::vector<TextureImage>* images = nullptr;
 };
 
-/// The texture at a point. `uvs` has one entry for each UV set of the surface; a set that the surface lacks reads as
-/// (0, 0).
+/// The texture at a point, or over its footprint where the texture has mipmaps. A UV set that the surface lacks reads
+/// as (0, 0).
 ///
 /// Texel centres lie at half integers; wrapping is exact for any finite uv (non-finite reads as (0, 0)). With `srgb`
 /// the colour channels are decoded (IEC 61966-2-1) texel by texel before they are filtered; alpha never is. Grey fills
 /// r, g, b; a missing alpha is 1.
-[[nodiscard]] Rgba sample(const TextureTable& table, const TextureUse& use, ColorSpace space, const Vec2f* uvs,
-                          int uv_count) noexcept;
+[[nodiscard]] Rgba sample(const TextureTable& table, const TextureUse& use, ColorSpace space,
+                          const SurfaceInputs& inputs) noexcept;
 
 /// IEC 61966-2-1 and back, for one channel. Exact at 0 and 1.
 [[nodiscard]] float linear_from_srgb(float encoded) noexcept;

@@ -23,6 +23,16 @@ void interpolate_attributes(const TriangleMesh& part, const std::array<uint32_t,
   }
 }
 
+/// How fast texture coordinates go over a triangle of that area: the root of the ratio of the areas.
+void measure_uvs(const TriangleMesh& part, const std::array<uint32_t, 3>& corner, double area, SurfacePoint& s) {
+  s.has_uv_per_metre = area > 0;
+  for (size_t k = 0; s.has_uv_per_metre && k < part.uvs.size(); ++k) {
+    const Vec2f a = part.uvs[k][corner[0]], b = part.uvs[k][corner[1]], c = part.uvs[k][corner[2]];
+    const float uv_area = std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+    s.uv_per_metre[k] = std::sqrt(uv_area / float(area));
+  }
+}
+
 SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v) {
   const MeshInstance& instance = scene.geometry.mesh_instances[ids.object];
   const TriangleMesh& part = scene.geometry.meshes[instance.mesh].parts[ids.part];
@@ -36,7 +46,9 @@ SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v)
   const Vec3d p1 = transform_point(m, Vec3d(part.positions[corner[1]]));
   const Vec3d p2 = transform_point(m, Vec3d(part.positions[corner[2]]));
   s.p_world = p0 * (1.0 - u - v) + p1 * double(u) + p2 * double(v);
-  Vec3d ng = normalize(cross(p1 - p0, p2 - p0));
+  const Vec3d twice_area = cross(p1 - p0, p2 - p0);
+  measure_uvs(part, corner, length(twice_area), s);
+  Vec3d ng = normalize(twice_area);
   if (determinant(m) < 0) ng = -ng;
   s.ng_world = s.ns_world = Vec3f(ng);
   if (part.normals.empty() && !part.polygon_normals.empty()) {

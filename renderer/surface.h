@@ -18,8 +18,13 @@ struct SurfacePoint {
   int uv_count = 0;
   Rgba color;
   uint32_t material = 0;
+  std::array<float, kMaxUvSets> uv_per_metre;  // on triangles: the root of the ratio of areas
+  bool has_uv_per_metre = false;
+  float footprint = 0;  // metres across, of what the hit stands for; 0: a point
 
-  [[nodiscard]] SurfaceInputs inputs() const { return {uvs.data(), uv_count, color}; }
+  [[nodiscard]] SurfaceInputs inputs() const {
+    return {uvs.data(), uv_count, color, footprint, has_uv_per_metre ? uv_per_metre.data() : nullptr};
+  }
 };
 
 struct HitIds {

@@ -21,6 +21,7 @@ struct Shading {
   bool enters;        // n of the surface against d
   Rgb weight;         // of the ray, times the surface's coverage
   const Path& path;   // of the ray
+  Cone cone;          // of the ray, at the hit
   Boundary boundary;  // where the surface bounds a body
 };
 
@@ -83,8 +84,11 @@ class Whitted {
         radiance_[path.pixel] += path.weight * sky(path, ray.direction);
       return;
     }
-    const SurfacePoint surface =
+    SurfacePoint surface =
         surface_point(scene_, ray, {hits.object[i], hits.part[i], hits.primitive[i]}, hits.t[i], hits.u[i], hits.v[i]);
+    const Cone cone{path.cone.width_at(hits.t[i]), path.cone.spread};
+    // A slanted surface shows more of itself along one axis: the mean of both, for mip levels have no direction.
+    surface.footprint = cone.width / std::sqrt(std::max(1e-3f, std::abs(dot(surface.ng_world, ray.direction))));
     const Material& material = scene_.materials[surface.material];
     const SurfaceInputs inputs = surface.inputs();
     const float alpha = material.alpha_mode == AlphaMode::blend ? coverage(material, table_, inputs) : 1.0f;
@@ -93,19 +97,19 @@ class Whitted {
     Vec3f n = shading_normal(surface, material.normal_texture, material.normal_scale);
     const bool enters = dot(n, ray.direction) < 0;
     if (!enters) n = -n;
-    Shading s{surface, material, ray.direction, -ray.direction, n, enters, arriving * alpha, path, {}};
+    Shading s{surface, material, ray.direction, -ray.direction, n, enters, arriving * alpha, path, cone, {}};
     if (bounds_body(material)) {
       s.boundary =
           cross_boundary(path.media, surface.material, dot(surface.ng_world, ray.direction) < 0, scene_.materials);
       if (!s.boundary.seen)
         return spawn_as(s, ray.direction,
-                        {path.pixel, arriving, path.depth, path.kind, s.boundary.after, path.roughness});
+                        {path.pixel, arriving, path.depth, path.kind, s.boundary.after, cone, path.roughness});
     }
     if (alpha < 1) {
       // A texel that is not there at all costs no depth: foliage is made of many of them.
       const uint16_t depth = alpha > 0 ? uint16_t(path.depth + 1) : path.depth;
       spawn_as(s, ray.direction,
-               {path.pixel, arriving * (1 - alpha), depth, view ? RayKind::straight : path.kind, path.media,
+               {path.pixel, arriving * (1 - alpha), depth, view ? RayKind::straight : path.kind, path.media, cone,
                 path.roughness});
     }
     if (alpha == 0) return;
@@ -268,7 +272,7 @@ class Whitted {
   void spawn(const Shading& s, const Vec3f& direction, const Rgb& weight, RayKind kind, const Media& media,
              float roughness = 0) {
     const float blur = std::min(1.0f, std::hypot(s.path.roughness, roughness));
-    spawn_as(s, direction, {s.path.pixel, weight, uint16_t(s.path.depth + 1), kind, media, blur});
+    spawn_as(s, direction, {s.path.pixel, weight, uint16_t(s.path.depth + 1), kind, media, s.cone, blur});
   }
 
   void spawn_as(const Shading& s, const Vec3f& direction, const Path& path) {

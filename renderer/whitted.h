@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "renderer/camera_ray.h"
 #include "renderer/media.h"
 #include "renderer/render.h"
 #include "renderer/surface.h"
@@ -19,6 +20,7 @@ struct Path {
   uint16_t depth = 0;
   RayKind kind = RayKind::camera;
   Media media{};        // around its origin
+  Cone cone{};          // around it, as wide as its share of the picture
   float roughness = 0;  // of the surfaces that sent it here: how blurred it sees the environment
 };
 

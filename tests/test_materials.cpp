@@ -22,7 +22,7 @@ struct OneTexture {
   [[nodiscard]] TextureTable table() const { return {&textures, &images}; }
   [[nodiscard]] Rgba at(float u, float v, ColorSpace space = ColorSpace::linear) const {
     const Vec2f uv{u, v};
-    return sample(table(), use, space, &uv, 1);
+    return sample(table(), use, space, {.uvs = &uv, .uv_count = 1, .color = {}});
   }
 };
 
@@ -132,7 +132,7 @@ TEST(TextureLookUp, TransformSetsAndAbsentTextures) {
   EXPECT_EQ(t.at(9, 0.125f).rgb.r, 1);
   t.use.uv_set = 1;
   EXPECT_EQ(t.at(9, 0.125f).rgb.r, 0.5f);  // no such set: (0, 0), transformed
-  EXPECT_EQ(sample(t.table(), {}, ColorSpace::srgb, nullptr, 0).rgb, Rgb{1.0f});
+  EXPECT_EQ(sample(t.table(), {}, ColorSpace::srgb, {}).rgb, Rgb{1.0f});
   t.images[0] = {};
   EXPECT_EQ(t.at(0, 0).rgb, Rgb{1.0f});
   EXPECT_EQ(t.at(0, 0).a, 1);
@@ -276,7 +276,8 @@ TEST(MetallicRoughness, ReflectsNoMoreThanItReceives) {
         for (int i = 0; i < rows; ++i)
           for (int j = 0; j < columns; ++j) {
             const float theta = (float(i) + 0.5f) / rows * kPi / 2, phi = (float(j) + 0.5f) / columns * 2 * kPi;
-            sum += double(reflected_light(bsdf, LayerFrames{n}, direction(theta, phi), direction(view, 0)).r * std::sin(theta));
+            sum += double(reflected_light(bsdf, LayerFrames{n}, direction(theta, phi), direction(view, 0)).r *
+                          std::sin(theta));
           }
         sum *= double(kPi / 2 / rows) * double(2 * kPi / columns);
         EXPECT_LE(sum, 1.005) << metallic << " " << roughness << " " << view;
@@ -351,7 +352,8 @@ TEST(Material, EmissionAndTangentSpaceNormal) {
   EXPECT_EQ(tangent_space_normal(m.normal_texture, m.normal_scale, {}, {}), up);
   OneTexture t;
   m.normal_texture = t.use;
-  EXPECT_EQ(tangent_space_normal(m.normal_texture, m.normal_scale, t.table(), {}), up);  // an image that was not decoded
+  EXPECT_EQ(tangent_space_normal(m.normal_texture, m.normal_scale, t.table(), {}),
+            up);  // an image that was not decoded
   t.images[0] = {1, 1, 3, std::vector<float>{0.8f, 0.5f, 0.9f}};
   m.normal_scale = 0.5f;
   const Vec3f n = tangent_space_normal(m.normal_texture, m.normal_scale, t.table(), {});
