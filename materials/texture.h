@@ -17,7 +17,7 @@ namespace alhazen {
 struct TextureImage {
   int width = 0, height = 0, channels = 0;
   std::variant<std::vector<uint8_t>, std::vector<uint16_t>, std::vector<float>> samples;
-  std::vector<TextureImage> smaller;  // mip levels 1, 2, ...; empty: level 0 is all there is
+  std::vector<TextureImage> smaller{};  // mip levels 1, 2, ...; empty: level 0 is all there is
 };
 
 enum class Wrap : uint8_t { repeat, mirrored_repeat, clamp_to_edge };
