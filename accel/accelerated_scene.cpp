@@ -8,7 +8,10 @@
 
 #include "accel/embree.h"
 #include "accel/instance_geometry.h"
+#include "accel/ray_rows.h"
 #include "accel/shape_geometry.h"
+#include "accel/triangle_geometry.h"
+#include "accel/wave_query.h"
 #include "core/error.h"
 
 namespace alhazen {
@@ -26,13 +29,16 @@ struct AcceleratedScene::Impl {
   SurfaceFilter filter;
   std::vector<std::unique_ptr<ShapeGroup>> shape_groups;
   std::vector<std::unique_ptr<InstanceGroup>> instance_groups;
+  std::vector<std::unique_ptr<TriangleGroup>> triangle_groups;  // of ours
   std::vector<TopEntry> top;
+  std::vector<uint32_t> object_of_top;  // by number in `top`
   std::vector<RTCScene> mesh_scenes;
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   bool has_instances = false;
   bool has_filters = false;  // surfaces that let some light through
-  int width = 4;
+  int width = 4;             // of coherent waves' packets
+  int incoherent_width = 4;  // of others'
 
   ~Impl() {
     if (scene) rtcReleaseScene(scene);
@@ -51,8 +57,7 @@ struct AcceleratedScene::Impl {
       return {object, geometry, primitive};
     }
     const TopEntry& entry = top[geometry];
-    if (entry.kind == TopEntry::Kind::shapes)
-      return {shape_groups[entry.part]->members[primitive].object, uint32_t(u), 0};
+    if (entry.kind == TopEntry::Kind::shapes) return {shape_groups[entry.part]->objects[primitive], uint32_t(u), 0};
     return {entry.object, entry.part, primitive};
   }
 };
@@ -61,7 +66,8 @@ struct AcceleratedScene::Impl {
 struct AcceleratedScene::Traversal {
   struct Query : WaveQuery {
     const Impl* impl;
-    Query(const Impl& i, Coherence rays, Rgb* visible_by_ray) : WaveQuery(rays, visible_by_ray), impl(&i) {}
+    Query(const Impl& i, Coherence rays, Rgb* visible_by_ray)
+        : WaveQuery(rays, visible_by_ray, i.object_of_top.data()), impl(&i) {}
   };
 
   static Crossing crossing_of(const RTCFilterFunctionNArguments* args, const Impl& impl, unsigned lane) {
@@ -107,13 +113,14 @@ struct AcceleratedScene::Traversal {
   template <int width>
   static void choose_lanes(const RayWave& wave, size_t first, int lanes, int* valid) {
     constexpr float kReach = 1.8e18f;
-    const auto within = [&](const Vec3Lanes& v, size_t k) {
-      return std::abs(v.x[k]) < kReach && std::abs(v.y[k]) < kReach && std::abs(v.z[k]) < kReach;
+    const auto within = [&](const Vec3Lanes& v) {
+      const auto below = [&](const Lanes<float>& row) {
+        return absolute(FloatLanes<width>(&row[first], std::experimental::element_aligned)) < kReach;
+      };
+      return below(v.x) && below(v.y) && below(v.z);
     };
-    for (int i = 0; i < width; ++i) {
-      const size_t k = first + size_t(i);
-      valid[i] = i < lanes && within(wave.origin, k) && within(wave.direction, k) ? -1 : 0;
-    }
+    const uint32_t bits = lane_bits(within(wave.origin) && within(wave.direction));
+    for (int i = 0; i < width; ++i) valid[i] = i < lanes ? -int(bits >> i & 1) : 0;
   }
 
   template <int width>
@@ -128,6 +135,9 @@ struct AcceleratedScene::Traversal {
       for (int i = 0; i < width; ++i) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
       load_rays(wave, first, width, packet.ray);
       embree::intersect<width>(valid, impl.scene, query, packet);
+      constexpr size_t kBytes = size_t(width) * sizeof(float);
+      std::memcpy(&hits.t[first], packet.ray.tfar, kBytes);
+      std::memcpy(&hits.u[first], packet.hit.u, kBytes), std::memcpy(&hits.v[first], packet.hit.v, kBytes);
       for (int i = 0; i < lanes; ++i) {
         const size_t k = first + size_t(i);
         hits.object[k] = kNone;
@@ -135,7 +145,6 @@ struct AcceleratedScene::Traversal {
         const Impl::Ids ids =
             impl.ids(packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i], packet.hit.u[i]);
         hits.object[k] = ids.object, hits.part[k] = ids.part, hits.primitive[k] = ids.primitive;
-        hits.t[k] = packet.ray.tfar[i], hits.u[k] = packet.hit.u[i], hits.v[k] = packet.hit.v[i];
       }
     }
   }
@@ -163,7 +172,7 @@ struct AcceleratedScene::Traversal {
     return scene;
   }
 
-  static void attach_part(Impl& impl, RTCScene scene, uint32_t id, const TriangleMesh& part) {
+  static RTCGeometry new_embree_triangles(Impl& impl, const TriangleMesh& part, Opacity opacity) {
     RTCGeometry g = embree::new_geometry(impl.device, RTC_GEOMETRY_TYPE_TRIANGLE);
     // Embree reads 16 bytes at each vertex, so the last of 12 needs readable memory after it.
     if (part.positions.capacity() > part.positions.size()) {
@@ -176,10 +185,25 @@ struct AcceleratedScene::Traversal {
     }
     rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, part.triangles.data(), 0,
                                3 * sizeof(uint32_t), part.triangles.size());
-    const Opacity opacity = impl.filter.opacity.empty() ? Opacity::opaque : impl.filter.opacity[part.material];
     if (opacity == Opacity::cutout) rtcSetGeometryIntersectFilterFunction(g, leave_out_holes);
     if (opacity != Opacity::opaque) rtcSetGeometryOccludedFilterFunction(g, attenuate);
     rtcCommitGeometry(g);
+    return g;
+  }
+
+  /// Part `part_index` of the mesh as geometry `id` of the scene; `object`: where the part is not instanced.
+  static void attach_part(Impl& impl, RTCScene scene, uint32_t id, const Mesh& mesh, uint32_t part_index,
+                          uint32_t object, bool watertight) {
+    const TriangleMesh& part = mesh.parts[part_index];
+    const Opacity opacity = impl.filter.opacity.empty() ? Opacity::opaque : impl.filter.opacity[part.material];
+    RTCGeometry g;
+    if (watertight) {
+      impl.triangle_groups.push_back(
+          std::make_unique<TriangleGroup>(TriangleGroup{part, part_index, object, opacity, impl.filter}));
+      g = new_triangle_geometry(impl.device, *impl.triangle_groups.back());
+    } else {
+      g = new_embree_triangles(impl, part, opacity);
+    }
     rtcAttachGeometryByID(scene, g, id);
     rtcReleaseGeometry(g);
   }
@@ -203,6 +227,20 @@ struct AcceleratedScene::Traversal {
   }
 };
 
+namespace {
+
+/// Whether rays that run apart are faster one by one: where most primitives are shapes, and many. A packet would then
+/// call each shape for a lane or two. Triangles are faster in packets all the same.
+bool prefers_single_rays(const Geometry& geometry) {
+  constexpr size_t kManyShapes = 3000;
+  size_t triangles = 0;
+  for (const MeshInstance& instance : geometry.mesh_instances)
+    for (const TriangleMesh& part : geometry.meshes[instance.mesh].parts) triangles += part.triangles.size();
+  return geometry.shape_instances.size() > std::max(triangles, kManyShapes);
+}
+
+}  // namespace
+
 AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter& filter, const BuildOptions& options)
     : impl_(std::make_unique<Impl>()) {
   Impl& impl = *impl_;
@@ -213,6 +251,7 @@ AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter
   impl.device = rtcNewDevice(config.c_str());
   if (!impl.device) throw Error("Embree has no device for this CPU", ExitStatus::internal);
   impl.width = embree::packet_width(impl.device);
+  impl.incoherent_width = prefers_single_rays(geometry) ? 1 : impl.width;
   impl.scene = Traversal::new_scene(impl, options);
   impl.mesh_scenes.assign(geometry.meshes.size(), nullptr);
 
@@ -225,7 +264,7 @@ AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter
     if (uses[instance.mesh] == 1 && instance.world_from_object == Affine3d{}) {
       for (uint32_t part = 0; part < mesh.parts.size(); ++part) {
         if (mesh.parts[part].triangles.empty()) continue;
-        Traversal::attach_part(impl, impl.scene, uint32_t(impl.top.size()), mesh.parts[part]);
+        Traversal::attach_part(impl, impl.scene, uint32_t(impl.top.size()), mesh, part, object, options.watertight);
         impl.top.push_back({TopEntry::Kind::baked_part, object, part});
       }
       continue;
@@ -234,7 +273,8 @@ AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter
     if (!shared) {
       shared = Traversal::new_scene(impl, options);
       for (uint32_t part = 0; part < mesh.parts.size(); ++part)
-        if (!mesh.parts[part].triangles.empty()) Traversal::attach_part(impl, shared, part, mesh.parts[part]);
+        if (!mesh.parts[part].triangles.empty())
+          Traversal::attach_part(impl, shared, part, mesh, part, kNone, options.watertight);
       rtcCommitScene(shared);
     }
     impl.has_instances = true;
@@ -256,6 +296,7 @@ AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter
     rtcReleaseGeometry(g);
     impl.top.push_back({TopEntry::Kind::shapes, kNone, k});
   }
+  for (const TopEntry& entry : impl.top) impl.object_of_top.push_back(entry.object);
   rtcCommitScene(impl.scene);
   if (const RTCError error = rtcGetDeviceError(impl.device); error != RTC_ERROR_NONE)
     throw Error("building the hierarchy: Embree error " + std::to_string(int(error)), ExitStatus::internal);
@@ -265,14 +306,8 @@ AcceleratedScene::~AcceleratedScene() = default;
 
 void AcceleratedScene::intersect(const RayWave& rays_world, Coherence coherence, HitWave& hits) const noexcept {
   hits.resize(rays_world.size());
-  switch (impl_->width) {
-    case 16:
-      return Traversal::intersect_packets<16>(*impl_, rays_world, coherence, hits);
-    case 8:
-      return Traversal::intersect_packets<8>(*impl_, rays_world, coherence, hits);
-    default:
-      return Traversal::intersect_packets<4>(*impl_, rays_world, coherence, hits);
-  }
+  with_width(coherence == Coherence::coherent ? impl_->width : impl_->incoherent_width,
+             [&](auto width) { Traversal::intersect_packets<width>(*impl_, rays_world, coherence, hits); });
 }
 
 void AcceleratedScene::transmittance(const RayWave& rays_world, Coherence coherence,
@@ -281,16 +316,11 @@ void AcceleratedScene::transmittance(const RayWave& rays_world, Coherence cohere
   for (size_t i = 0; i < rays_world.size(); ++i) visible[i] = Rgb(1.0f);
   // Coherent occlusion may show a callback the same surface twice, once for each octant of directions in the packet.
   if (impl_->has_filters) coherence = Coherence::incoherent;
-  const bool hangs =
-      embree::kCoherentOccluded16HangsOnInstances && impl_->has_instances && coherence == Coherence::coherent;
-  switch (hangs ? std::min(impl_->width, 8) : impl_->width) {
-    case 16:
-      return Traversal::occlude_packets<16>(*impl_, rays_world, coherence, visible);
-    case 8:
-      return Traversal::occlude_packets<8>(*impl_, rays_world, coherence, visible);
-    default:
-      return Traversal::occlude_packets<4>(*impl_, rays_world, coherence, visible);
-  }
+  const bool coherent = coherence == Coherence::coherent;
+  const bool hangs = embree::kCoherentOccluded16HangsOnInstances && impl_->has_instances && coherent;
+  const int widest = coherent ? impl_->width : impl_->incoherent_width;
+  with_width(unsigned(hangs ? std::min(widest, 8) : widest),
+             [&](auto width) { Traversal::occlude_packets<width>(*impl_, rays_world, coherence, visible); });
 }
 
 int AcceleratedScene::packet_width() const noexcept { return impl_->width; }

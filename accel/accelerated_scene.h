@@ -13,6 +13,8 @@ namespace alhazen {
 struct BuildOptions {
   bool robust = true;  // watertight triangle tests: 13 to 27 % of traversal, and no ray slips between two triangles
   int threads = 0;     // for the build; 0: all
+  // Triangles of our own in place of Embree's: closed meshes have no leaks, t is rounded once. Several times slower.
+  bool watertight = false;
 };
 
 /// Immutable once built, so every query is safe from any thread. `geometry` and the filter's data must outlive it:

@@ -51,6 +51,28 @@ template <class DerivedQuery, class CallbackArguments>
 template <int width>
 struct Packets;
 
+/// One ray in the same words: a single lane is laid out as Embree's ray.
+template <>
+struct Packets<1> {
+  using Ray = RTCRayNt<1>;
+  using RayHit = RTCRayHitNt<1>;
+#if ALHAZEN_EMBREE_MAJOR >= 4
+  static void intersect(const int* valid, RTCScene scene, RayHit* ray, RTCIntersectArguments* arguments) {
+    if (*valid) rtcIntersect1(scene, reinterpret_cast<RTCRayHit*>(ray), arguments);
+  }
+  static void occluded(const int* valid, RTCScene scene, Ray* ray, RTCOccludedArguments* arguments) {
+    if (*valid) rtcOccluded1(scene, reinterpret_cast<RTCRay*>(ray), arguments);
+  }
+#else
+  static void intersect(const int* valid, RTCScene scene, CallbackContext* context, RayHit* ray) {
+    if (*valid) rtcIntersect1(scene, context, reinterpret_cast<RTCRayHit*>(ray));
+  }
+  static void occluded(const int* valid, RTCScene scene, CallbackContext* context, Ray* ray) {
+    if (*valid) rtcOccluded1(scene, context, reinterpret_cast<RTCRay*>(ray));
+  }
+#endif
+};
+
 template <>
 struct Packets<4> {
   using Ray = RTCRay4;

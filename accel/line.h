@@ -13,9 +13,6 @@
 
 namespace alhazen {
 
-template <class T>
-using MaskOf = std::conditional_t<std::is_same_v<T, DoubleLanes>, LaneMask, bool>;
-
 /// The points origin + t direction in a shape's own space. Rounded: the exact line's components lie within the errors.
 template <class T>
 struct ObjectLine {
@@ -31,7 +28,7 @@ ObjectLine<T> moved_origin(const ObjectLine<T>& line, const T& t) {
   const T size = absolute(t);
   const auto axis = [&](const T& o, const T& d, const T& oe, const T& de, T& p, T& pe) {
     p = o + t * d;
-    pe = oe + size * (de + absolute(d) * (3 * u)) + absolute(o) * (3 * u);
+    pe = oe + size * (de + absolute(d) * (2.1 * u)) + absolute(o) * (1.1 * u);  // a product, a sum
   };
   axis(line.origin.x, line.direction.x, line.origin_error.x, line.direction_error.x, moved.origin.x,
        moved.origin_error.x);

@@ -68,6 +68,11 @@ double max_entry(const Affine3d& m) {
 LineMap<double> line_map(const Affine3d& world_from_object) { return inverted(world_from_object, 0.0); }
 
 LineMap<Quad> quad_line_map(std::span<const Affine3d> chain) {
+  const Affine3d& first = chain.front();
+  if (chain.size() == 1 && first == Affine3d{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, first.origin}) {  // quickly done
+    const Quad u = kUnitRoundoff<Quad>;
+    return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, Vec3<Quad>(first.origin), {u, u, u}, {}};
+  }
   Affine3<Quad> product(chain.front());
   Quad entries = max_entry(chain.front()), origins = max_component(abs(chain.front().origin));
   for (const Affine3d& inner : chain.subspan(1)) {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "accel/packet.h"
+#include "accel/wave_query.h"
 #include "core/error.h"
 #include "core/fork_join.h"
 
@@ -14,7 +16,6 @@ namespace {
 
 constexpr double kLargestCoordinate = 1.844e18;  // beyond it, Embree drops primitives without a word
 // The functions on lanes are flattened: a call for each operation on vectors would cost more than the operation.
-constexpr unsigned kLanes = unsigned(DoubleLanes::size());
 
 /// The largest float not above, the smallest not below.
 float round_down(double x) {
@@ -23,9 +24,12 @@ float round_down(double x) {
 }
 float round_up(double x) { return -round_down(-x); }
 
+Bounds3d object_bounds(const PlacedShape& placed) {
+  return std::visit([](const auto& shape) { return bounds(shape); }, *placed.shape);
+}
+
 /// A box around the placed shape, larger by a few roundings of double.
-Bounds3d conservative_bounds(const PlacedShape& placed) {
-  const Bounds3d object = std::visit([](const auto& shape) { return bounds(shape); }, *placed.shape);
+Bounds3d conservative_bounds(const PlacedShape& placed, const Bounds3d& object) {
   if (is_empty(object)) return object;
   const Affine3d& m = *placed.world_from_object;
   const Bounds3d world = transform_bounds(m, object);
@@ -35,23 +39,22 @@ Bounds3d conservative_bounds(const PlacedShape& placed) {
 }
 
 void write_bounds(const RTCBoundsFunctionArguments* args) {
-  const auto& group = *static_cast<const ShapeGroup*>(args->geometryUserPtr);
-  const Bounds3d b = conservative_bounds(group.members[args->primID].placed);
+  const ShapeGroup& group = *static_cast<const ShapeGroup*>(args->geometryUserPtr);
+  const PlacedShape& placed = group.members[args->primID].placed;
+  const Bounds3d b = conservative_bounds(placed, object_bounds(placed));
   args->bounds_o->lower_x = round_down(b.lower.x), args->bounds_o->upper_x = round_up(b.upper.x);
   args->bounds_o->lower_y = round_down(b.lower.y), args->bounds_o->upper_y = round_up(b.upper.y);
   args->bounds_o->lower_z = round_down(b.lower.z), args->bounds_o->upper_z = round_up(b.upper.z);
 }
 
-Rayf ray_of(RTCRayN* ray, unsigned n, unsigned i) {
-  return {{RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)},
-          {RTCRayN_dir_x(ray, n, i), RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i)},
-          RTCRayN_tnear(ray, n, i),
-          RTCRayN_tfar(ray, n, i)};
+template <class Arguments>
+const ShapeGroup& group_of(const Arguments* args) {
+  return *static_cast<const ShapeGroup*>(args->geometryUserPtr);
 }
 
-Crossing crossing_of(const ShapeGroup::Member& member, const Rayf& ray, const ShapeHit& hit) {
+Crossing crossing_of(const ShapeGroup& group, uint32_t k, const Rayf& ray, const ShapeHit& hit) {
   const Vec3d p_world = Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t);
-  return {member.object, hit.face, 0, 0, 0, map_point(member.placed.object_from_world, p_world)};
+  return {group.objects[k], hit.face, 0, 0, 0, map_point(group.members[k].placed.object_from_world, p_world)};
 }
 
 std::vector<ShapeHit>& hits_of(const ShapeGroup::Member& member, const Rayf& ray) {
@@ -61,211 +64,117 @@ std::vector<ShapeHit>& hits_of(const ShapeGroup::Member& member, const Rayf& ray
   return hits;
 }
 
-/// Takes a hit into the ray, unless one at the same distance has the smaller (geometry, primitive): which one is met
-/// first must not depend on the order of traversal.
-void take(const RTCIntersectFunctionNArguments* args, unsigned i, const ShapeHit& found) {
-  RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
-  const uint32_t other = RTCHitN_geomID(hit, args->N, i);
-  if (found.t == RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, args->N), args->N, i) && other != RTC_INVALID_GEOMETRY_ID &&
-      (other < args->geomID || (other == args->geomID && RTCHitN_primID(hit, args->N, i) <= args->primID)))
-    return;
-  embree::accept(args, i, found.t);
-  RTCHitN_u(hit, args->N, i) = float(found.face);
-}
-
-/// One ray after the other: for single rays, surfaces with holes, and the doubtful lanes of packets.
-void intersect_lane(const RTCIntersectFunctionNArguments* args, const ShapeGroup& group,
-                    const ShapeGroup::Member& member, unsigned i) {
-  const Rayf ray = ray_of(RTCRayHitN_RayN(args->rayhit, args->N), args->N, i);
-  for (const ShapeHit& hit : hits_of(member, ray)) {
-    if (member.opacity == Opacity::cutout && !group.filter.is_present(group.filter.data, crossing_of(member, ray, hit)))
-      continue;
-    return take(args, i, hit);
+/// One ray the long way: for surfaces with holes, composites, and what doubles leave in doubt.
+void intersect_lane(const RTCIntersectFunctionNArguments* args, unsigned i) {
+  const ShapeGroup& group = group_of(args);
+  const uint32_t k = args->primID;
+  const bool cutout = group.members[k].opacity == Opacity::cutout;
+  const Rayf ray = rows_of(args).ray(i);
+  for (const ShapeHit& hit : hits_of(group.members[k], ray)) {
+    if (cutout && !group.filter.is_present(group.filter.data, crossing_of(group, k, ray, hit))) continue;
+    return take(args, i, hit.t, float(hit.face), 0);
   }
 }
 
-void occlude_lane(const RTCOccludedFunctionNArguments* args, const ShapeGroup& group, const ShapeGroup::Member& member,
-                  unsigned i) {
-  const Rayf ray = ray_of(args->ray, args->N, i);
+void occlude_lane(const RTCOccludedFunctionNArguments* args, unsigned i) {
+  const ShapeGroup& group = group_of(args);
+  const uint32_t k = args->primID;
+  const bool opaque = group.members[k].opacity == Opacity::opaque;
+  const Rayf ray = rows_of(args).ray(i);
   Rgb& visible = embree::query_of<WaveQuery>(args).visible[RTCRayN_id(args->ray, args->N, i)];
-  for (const ShapeHit& hit : hits_of(member, ray)) {
-    visible *= member.opacity == Opacity::opaque
-                   ? Rgb(0.0f)
-                   : group.filter.transmittance(group.filter.data, crossing_of(member, ray, hit));
+  for (const ShapeHit& hit : hits_of(group.members[k], ray)) {
+    visible *= opaque ? Rgb(0.0f) : group.filter.transmittance(group.filter.data, crossing_of(group, k, ray, hit));
     if (max_component(visible) > 0) continue;
     return embree::accept(args, i);
   }
 }
 
-/// Lanes [first, first + kLanes) of a packet; those beyond its end repeat the last.
-struct PacketLanes {
-  Vec3<DoubleLanes> origin, direction;
-  DoubleLanes t_min, t_max;
-  LaneMask active;
+/// A member whose shape is of kind S, and the rays of a packet.
+template <class S, class Arguments>
+struct Meeting {
+  const Arguments* args;
+  const ShapeGroup& group;
+  const ShapeGroup::Member& member;
+  RayRows rays;
+
+  explicit Meeting(const Arguments* arguments)
+      : args(arguments), group(group_of(args)), member(group.members[args->primID]), rays(rows_of(args)) {}
+
+  template <class T>
+  [[nodiscard]] LineCrossings<T> crossings_of(const Vec3<T>& origin, const Vec3<T>& direction) const {
+    return crossings(*std::get_if<S>(member.placed.shape),
+                     object_line(member.placed.object_from_world, origin, direction));
+  }
 };
 
-PacketLanes load_lanes(RTCRayN* ray, const int* valid, unsigned n, unsigned first) {
-  const auto load = [&](auto& row) {
-    if (first + kLanes <= n) return DoubleLanes(&row, std::experimental::element_aligned);
-    return DoubleLanes([&](auto i) { return double((&row)[std::min(unsigned(i), n - first - 1)]); });
-  };
-  PacketLanes lanes;
-  lanes.origin = {load(RTCRayN_org_x(ray, n, first)), load(RTCRayN_org_y(ray, n, first)),
-                  load(RTCRayN_org_z(ray, n, first))};
-  lanes.direction = {load(RTCRayN_dir_x(ray, n, first)), load(RTCRayN_dir_y(ray, n, first)),
-                     load(RTCRayN_dir_z(ray, n, first))};
-  lanes.t_min = load(RTCRayN_tnear(ray, n, first)), lanes.t_max = load(RTCRayN_tfar(ray, n, first));
-  const DoubleLanes index([](auto i) { return double(i); });
-  lanes.active = load(valid[first]) != 0.0 && index < double(n - first);
-  return lanes;
-}
-
-int active_lanes(const int* valid, unsigned n) {
-  int count = 0;
-  for (unsigned i = 0; i < n; ++i) count -= valid[i];
-  return count;
-}
-
-using LaneFlags = std::array<bool, kLanes>;
-
-LaneFlags flags_of(const LaneMask& mask) {
-  LaneFlags flags;
-  mask.copy_to(flags.data(), std::experimental::element_aligned);
-  return flags;
-}
-
-using LaneFloats = std::array<float, kLanes>;
-
-LaneFloats floats_of(const DoubleLanes& x) {
-  LaneFloats floats;
-  x.copy_to(floats.data(), std::experimental::element_aligned);
-  return floats;
-}
-
-/// Takes the hits of lanes that held nothing as near. A plain loop over rows, which compilers turn into masked stores.
-void take_lanes(const RTCIntersectFunctionNArguments* args, unsigned first, const Nearest<DoubleLanes>& found,
-                const LaneFlags& hits) {
-  const unsigned n = args->N, count = std::min(kLanes, n - first);
-  const LaneFloats t = floats_of(found.t), face = floats_of(found.face);
-  RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, n);
-  float* t_far = &RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, n), n, first);
-  float *u = &RTCHitN_u(hit, n, first), *v = &RTCHitN_v(hit, n, first);
-  unsigned *geometry = &RTCHitN_geomID(hit, n, first), *primitive = &RTCHitN_primID(hit, n, first),
-           *instance = &RTCHitN_instID(hit, n, first, 0);
-  const unsigned geometry_id = args->geomID, primitive_id = args->primID, instance_id = args->context->instID[0];
-  for (unsigned i = 0; i < count; ++i) {
-    t_far[i] = hits[i] ? t[i] : t_far[i];
-    u[i] = hits[i] ? face[i] : u[i];
-    v[i] = hits[i] ? 0 : v[i];
-    geometry[i] = hits[i] ? geometry_id : geometry[i];
-    primitive[i] = hits[i] ? primitive_id : primitive[i];
-    instance[i] = hits[i] ? instance_id : instance[i];
-  }
-  for (unsigned i = 0; i < count; ++i)
-    if (hits[i]) embree::confirm(args, first + i);
+template <class S>
+[[gnu::flatten]] void intersect_lanes(const Meeting<S, RTCIntersectFunctionNArguments>& m, unsigned first,
+                                      uint32_t bits) {
+  const PacketLanes lanes(m.rays, first);
+  const Nearest<DoubleLanes> found = nearest(m.crossings_of(lanes.origin, lanes.direction), lanes.t_min, lanes.t_max);
+  const uint32_t doubtful = lane_bits(found.doubtful) & bits, hit = lane_bits(found.hit) & bits & ~doubtful;
+  if (hit) take_lanes(m.args, first, hit, floats_of(found.t), floats_of(found.face), {});
+  for_each_bit(doubtful, [&](unsigned i) { intersect_lane(m.args, first + i); });
 }
 
 template <class S>
-[[gnu::flatten]] void intersect_lanes(const RTCIntersectFunctionNArguments* args, const ShapeGroup& group,
-                                      const ShapeGroup::Member& member, unsigned first) {
-  const PacketLanes lanes = load_lanes(RTCRayHitN_RayN(args->rayhit, args->N), args->valid, args->N, first);
-  if (!any_of(lanes.active)) return;
-  const auto line = object_line(member.placed.object_from_world, lanes.origin, lanes.direction);
-  Nearest<DoubleLanes> found = nearest(crossings(std::get<S>(*member.placed.shape), line), lanes.t_min, lanes.t_max);
-  found.hit = found.hit && lanes.active && !found.doubtful;
-  if (any_of(found.hit && found.t == lanes.t_max)) {  // perhaps a tie: one by one
-    const LaneFlags hits = flags_of(found.hit);
-    for (unsigned i = 0; i < kLanes; ++i)
-      if (hits[i]) take(args, first + i, {float(found.t[i]), uint32_t(double(found.face[i]))});
-  } else if (any_of(found.hit)) {
-    take_lanes(args, first, found, flags_of(found.hit));
-  }
-  if (!any_of(found.doubtful && lanes.active)) return;
-  const LaneFlags doubtful = flags_of(found.doubtful && lanes.active);
-  for (unsigned i = 0; i < kLanes; ++i)
-    if (doubtful[i]) intersect_lane(args, group, member, first + i);
+[[gnu::flatten]] void intersect_quickly(const Meeting<S, RTCIntersectFunctionNArguments>& m, unsigned i) {
+  const Rayf ray = m.rays.ray(i);
+  const Nearest<double> found =
+      nearest(m.crossings_of(Vec3d(ray.origin), Vec3d(ray.direction)), double(ray.t_min), double(ray.t_max));
+  if (found.doubtful) return intersect_lane(m.args, i);
+  if (found.hit) take(m.args, i, float(found.t), float(found.face), 0);
 }
-
-/// One ray in double; the doubtful go the long way.
-template <class S>
-[[gnu::flatten]] void intersect_quickly(const RTCIntersectFunctionNArguments* args, const ShapeGroup& group,
-                                        const ShapeGroup::Member& member, unsigned i) {
-  const Rayf ray = ray_of(RTCRayHitN_RayN(args->rayhit, args->N), args->N, i);
-  const auto line = object_line(member.placed.object_from_world, Vec3d(ray.origin), Vec3d(ray.direction));
-  const auto found = nearest(crossings(std::get<S>(*member.placed.shape), line), double(ray.t_min), double(ray.t_max));
-  if (found.doubtful) return intersect_lane(args, group, member, i);
-  if (found.hit) take(args, i, {float(found.t), uint32_t(found.face)});
-}
-
-constexpr int kFewLanes = 2;  // no more than these go one by one
 
 template <class S>
 void intersect_group(const RTCIntersectFunctionNArguments* args) {
-  const auto& group = *static_cast<const ShapeGroup*>(args->geometryUserPtr);
-  const ShapeGroup::Member& member = group.members[args->primID];
+  const Meeting<S, RTCIntersectFunctionNArguments> m(args);
+  const uint32_t lanes = lanes_that_may_meet(m.group.balls[args->primID], m.rays, args->valid);
   for (unsigned i = 0; i < args->N; ++i)
     if (args->valid[i]) embree::reject(args, i);  // until a crossing is found to count
-  if constexpr (!std::is_same_v<S, Composite>) {
-    if (member.opacity != Opacity::cutout) {
-      if (active_lanes(args->valid, args->N) <= kFewLanes) {
-        for (unsigned i = 0; i < args->N; ++i)
-          if (args->valid[i]) intersect_quickly<S>(args, group, member, i);
-      } else {
-        for (unsigned first = 0; first < args->N; first += kLanes) intersect_lanes<S>(args, group, member, first);
-      }
-      return;
-    }
+  const auto one_by_one = [&](unsigned i) { intersect_lane(args, i); };
+  if constexpr (std::is_same_v<S, Composite>) {
+    for_each_bit(lanes, one_by_one);
+  } else {
+    if (m.member.opacity == Opacity::cutout) return for_each_bit(lanes, one_by_one);
+    for_lanes(
+        lanes, args->N, [&](unsigned i) { intersect_quickly(m, i); },
+        [&](unsigned first, uint32_t bits) { intersect_lanes(m, first, bits); });
   }
-  for (unsigned i = 0; i < args->N; ++i)
-    if (args->valid[i]) intersect_lane(args, group, member, i);
 }
 
 template <class S>
-[[gnu::flatten]] void occlude_lanes(const RTCOccludedFunctionNArguments* args, const ShapeGroup& group,
-                                    const ShapeGroup::Member& member, unsigned first) {
-  const PacketLanes lanes = load_lanes(args->ray, args->valid, args->N, first);
-  if (!any_of(lanes.active)) return;
-  const auto line = object_line(member.placed.object_from_world, lanes.origin, lanes.direction);
-  const Blocked<DoubleLanes> found =
-      blocked(crossings(std::get<S>(*member.placed.shape), line), lanes.t_min, lanes.t_max);
-  const LaneFlags blocks = flags_of(found.blocked && lanes.active);
-  for (unsigned i = 0; i < kLanes; ++i)
-    if (blocks[i]) embree::accept(args, first + i);
-  if (!any_of(found.doubtful && lanes.active)) return;
-  const LaneFlags doubtful = flags_of(found.doubtful && lanes.active);
-  for (unsigned i = 0; i < kLanes; ++i)
-    if (doubtful[i]) occlude_lane(args, group, member, first + i);
+[[gnu::flatten]] void occlude_lanes(const Meeting<S, RTCOccludedFunctionNArguments>& m, unsigned first, uint32_t bits) {
+  const PacketLanes lanes(m.rays, first);
+  const Blocked<DoubleLanes> found = blocked(m.crossings_of(lanes.origin, lanes.direction), lanes.t_min, lanes.t_max);
+  for_each_bit(lane_bits(found.blocked) & bits, [&](unsigned i) { embree::accept(m.args, first + i); });
+  for_each_bit(lane_bits(found.doubtful) & bits, [&](unsigned i) { occlude_lane(m.args, first + i); });
 }
 
 template <class S>
-[[gnu::flatten]] void occlude_quickly(const RTCOccludedFunctionNArguments* args, const ShapeGroup& group,
-                                      const ShapeGroup::Member& member, unsigned i) {
-  const Rayf ray = ray_of(args->ray, args->N, i);
-  const auto line = object_line(member.placed.object_from_world, Vec3d(ray.origin), Vec3d(ray.direction));
-  const auto found = blocked(crossings(std::get<S>(*member.placed.shape), line), double(ray.t_min), double(ray.t_max));
-  if (found.doubtful) return occlude_lane(args, group, member, i);
-  if (found.blocked) embree::accept(args, i);
+[[gnu::flatten]] void occlude_quickly(const Meeting<S, RTCOccludedFunctionNArguments>& m, unsigned i) {
+  const Rayf ray = m.rays.ray(i);
+  const Blocked<double> found =
+      blocked(m.crossings_of(Vec3d(ray.origin), Vec3d(ray.direction)), double(ray.t_min), double(ray.t_max));
+  if (found.doubtful) return occlude_lane(m.args, i);
+  if (found.blocked) embree::accept(m.args, i);
 }
 
 template <class S>
 void occlude_group(const RTCOccludedFunctionNArguments* args) {
-  const auto& group = *static_cast<const ShapeGroup*>(args->geometryUserPtr);
-  const ShapeGroup::Member& member = group.members[args->primID];
+  const Meeting<S, RTCOccludedFunctionNArguments> m(args);
+  const uint32_t lanes = lanes_that_may_meet(m.group.balls[args->primID], m.rays, args->valid);
   for (unsigned i = 0; i < args->N; ++i)
     if (args->valid[i]) embree::reject(args, i);
-  if constexpr (!std::is_same_v<S, Composite>) {
-    if (member.opacity == Opacity::opaque) {  // what blocks need not be counted
-      if (active_lanes(args->valid, args->N) <= kFewLanes) {
-        for (unsigned i = 0; i < args->N; ++i)
-          if (args->valid[i]) occlude_quickly<S>(args, group, member, i);
-      } else {
-        for (unsigned first = 0; first < args->N; first += kLanes) occlude_lanes<S>(args, group, member, first);
-      }
-      return;
-    }
+  const auto one_by_one = [&](unsigned i) { occlude_lane(args, i); };
+  if constexpr (std::is_same_v<S, Composite>) {
+    for_each_bit(lanes, one_by_one);
+  } else {
+    if (m.member.opacity != Opacity::opaque) return for_each_bit(lanes, one_by_one);  // what lets light through counts
+    for_lanes(
+        lanes, args->N, [&](unsigned i) { occlude_quickly(m, i); },
+        [&](unsigned first, uint32_t bits) { occlude_lanes(m, first, bits); });
   }
-  for (unsigned i = 0; i < args->N; ++i)
-    if (args->valid[i]) occlude_lane(args, group, member, i);
 }
 
 struct Callbacks {
@@ -281,10 +190,10 @@ Callbacks callbacks_for(size_t kind, std::index_sequence<kKind...>) {
   return table[kind];
 }
 
-void check_reach(const Geometry& geometry, const ShapeGroup::Member& member, const Bounds3d& b) {
+void check_reach(const Geometry& geometry, uint32_t object, const Bounds3d& b) {
   const double reach = std::max(max_component(abs(b.lower)), max_component(abs(b.upper)));
   if (!(reach < kLargestCoordinate))
-    throw Error("the shape of node " + std::to_string(node_of(geometry, member.object)) +
+    throw Error("the shape of node " + std::to_string(node_of(geometry, object)) +
                     " reaches further than 1.8e18 from the origin, more than traversal can hold",
                 ExitStatus::input);
 }
@@ -292,13 +201,16 @@ void check_reach(const Geometry& geometry, const ShapeGroup::Member& member, con
 /// Fills in how lines come to each member, in parallel; 1 for those that have no surface.
 std::vector<uint8_t> place_members(const Geometry& geometry, ShapeGroup& group) {
   std::vector<uint8_t> empty(group.members.size());
+  group.balls.resize(group.members.size());
   const ForkJoin order;
   tbb::parallel_for(size_t(0), group.members.size(), order.task([&](size_t k) {
     ShapeGroup::Member& member = group.members[k];
     member.placed.object_from_world = line_map(*member.placed.world_from_object);
-    const Bounds3d b = conservative_bounds(member.placed);
-    empty[k] = is_empty(b);
-    if (!empty[k]) check_reach(geometry, member, b);
+    const Bounds3d object = object_bounds(member.placed), world = conservative_bounds(member.placed, object);
+    empty[k] = is_empty(world);
+    if (empty[k]) return;
+    check_reach(geometry, group.objects[k], world);
+    group.balls[k] = culling_ball(member.placed, object);
   }));
   return empty;
 }
@@ -311,16 +223,19 @@ std::vector<std::unique_ptr<ShapeGroup>> group_shapes(const Geometry& geometry, 
     const ShapeInstance& instance = geometry.shape_instances[i];
     const Shape& shape = geometry.shapes[instance.shape];
     auto& group = groups[shape.index()];
-    if (!group) group = std::make_unique<ShapeGroup>(ShapeGroup{filter, {}});
+    if (!group) group = std::make_unique<ShapeGroup>(ShapeGroup{filter, {}, {}, {}});
     group->members.push_back({{{}, &instance.world_from_object, &shape},
-                              uint32_t(geometry.mesh_instances.size()) + i,
                               filter.opacity.empty() ? Opacity::opaque : filter.opacity[instance.material]});
+    group->objects.push_back(uint32_t(geometry.mesh_instances.size()) + i);
   }
   std::erase(groups, nullptr);
   for (auto& group : groups) {
     const std::vector<uint8_t> empty = place_members(geometry, *group);
-    size_t k = 0;  // what has no surface is never hit
-    std::erase_if(group->members, [&](const auto&) { return empty[k++] != 0; });
+    const auto erase = [&](auto& list) {  // what has no surface is never hit
+      size_t k = 0;
+      std::erase_if(list, [&](const auto&) { return empty[k++] != 0; });
+    };
+    erase(group->members), erase(group->balls), erase(group->objects);
   }
   std::erase_if(groups, [](const auto& group) { return group->members.empty(); });
   return groups;

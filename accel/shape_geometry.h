@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "accel/culling_ball.h"
 #include "accel/embree.h"
 #include "accel/geometry.h"
 #include "accel/shape_hits.h"
@@ -11,22 +12,16 @@
 
 namespace alhazen {
 
-/// A query whose shadow rays gather what the surfaces that they cross let through.
-struct WaveQuery : embree::Query {
-  Rgb* visible;  // by ray id; shadow queries only
-
-  WaveQuery(Coherence rays, Rgb* visible_by_ray) : embree::Query(rays), visible(visible_by_ray) {}
-};
-
 /// Placed shapes of one kind, as their callbacks read them. A hit's face is in its u.
 struct ShapeGroup {
   struct Member {
     PlacedShape placed;
-    uint32_t object;  // Geometry's object number
     Opacity opacity;
   };
   SurfaceFilter filter;
   std::vector<Member> members;
+  std::vector<CullingBall> balls;  // by member, as what follows
+  std::vector<uint32_t> objects;   // Geometry's object numbers
 };
 
 /// The scene's shapes by kind; kinds without members are left out. Throws `Error` naming the node of a shape that

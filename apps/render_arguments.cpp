@@ -76,6 +76,8 @@ void add_picture_options(CLI::App& command, RenderArguments& arguments) {
       ->check(finite())
       ->check(CLI::NonNegativeNumber.description(""))
       ->capture_default_str();
+  command.add_flag("--watertight", arguments.watertight,
+                   "Triangles of our own in place of Embree's: no ray slips through a closed mesh; slower");
 }
 
 void add_light_options(CLI::App& command, RenderArguments& arguments) {
@@ -211,6 +213,7 @@ std::string picture_options(const RenderArguments& arguments) {
   text += " --exposure " + number(arguments.exposure);
   if (arguments.view != ViewTransform::standard) text += std::string(" --view ") + kViews[size_t(arguments.view)];
   if (options.transparent) text += " --transparent";
+  if (arguments.watertight) text += " --watertight";
   return text;
 }
 

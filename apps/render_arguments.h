@@ -21,6 +21,7 @@ struct RenderArguments {
   SceneChoice choice;
   std::string camera;  // index or name; empty: the scene's first
   RenderOptions options;
+  bool watertight = false;
   LightChoice lights = LightChoice::automatic;
   std::optional<Rgb> background, ambient;
   std::string environment;         // file; empty: none

@@ -70,15 +70,14 @@ void set_up_lights(Scene& scene, const Camera& camera, const RenderArguments& ar
 }
 
 /// Builds the hierarchies while the textures are decoded.
-std::unique_ptr<AcceleratedScene> build(LoadedScene& loaded, const SurfaceFilter& filter, int threads) {
+std::unique_ptr<AcceleratedScene> build(LoadedScene& loaded, const SurfaceFilter& filter, const BuildOptions& options) {
   std::unique_ptr<AcceleratedScene> accelerated;
   std::vector<TextureImage> images;
   {
     const ForkJoin order;
-    tbb::parallel_invoke(order.task([&] {
-      accelerated = std::make_unique<AcceleratedScene>(loaded.scene.geometry, filter, BuildOptions{.threads = threads});
-    }),
-                         order.task([&] { images = decode_images(loaded.encoded, print_warning); }));
+    tbb::parallel_invoke(
+        order.task([&] { accelerated = std::make_unique<AcceleratedScene>(loaded.scene.geometry, filter, options); }),
+        order.task([&] { images = decode_images(loaded.encoded, print_warning); }));
   }
   loaded.scene.images = std::move(images);
   loaded.encoded = {};
@@ -133,7 +132,8 @@ std::string facts_text(const std::string& outcome, const PhaseSeconds& seconds, 
   std::snprintf(speed, sizeof speed, "%.1f Mray/s", 1e-6 * double(rays.all()) / std::max(seconds.render, 1e-9));
   return outcome + times + count_text(rays.all()) + " rays (" + count_text(rays.camera) + " camera, " +
          count_text(rays.mirror) + " mirror, " + count_text(rays.refracted) + " refracted, " + count_text(rays.shadow) +
-         " shadow), " + speed + "; " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+         " shadow; " + count_text(g_control.doubts) + " crossings beyond double), " + speed + "; " +
+         std::to_string(threads) + (threads == 1 ? " thread" : " threads");
 }
 
 std::string facts_json(const RenderArguments& arguments, bool complete, const PhaseSeconds& seconds, int threads) {
@@ -144,6 +144,7 @@ std::string facts_json(const RenderArguments& arguments, bool complete, const Ph
   json["pixels"] = g_control.pixels_done.load();
   json["seconds"] = {
       {"load", seconds.load}, {"build", seconds.build}, {"render", seconds.render}, {"write", seconds.write}};
+  json["doubts"] = g_control.doubts.load();
   json["rays"] = {
       {"camera", rays.camera}, {"mirror", rays.mirror}, {"refracted", rays.refracted}, {"shadow", rays.shadow}};
   json["threads"] = threads;
@@ -179,7 +180,7 @@ int run_render(const RenderArguments& arguments) {
 
   std::vector<Opacity> opacity;
   const SurfaceFilter filter = surface_filter(scene, opacity);
-  const auto accelerated = build(loaded, filter, threads);
+  const auto accelerated = build(loaded, filter, {.threads = threads, .watertight = arguments.watertight});
   seconds.build = watch.lap();
 
   RenderResult result = render_with_progress(arguments, scene, *accelerated, camera);
@@ -213,7 +214,8 @@ Command add_render_command(CLI::App& program) {
       "  alhazen render scene.gltf -o scene.png\n"
       "  alhazen render scene.glb -o beauty.exr --size 1920x1080 --spp 16 --transparent --half\n"
       "  alhazen render scene.glb -o ids.exr --integrator signature\n"
-      "  alhazen render shoe.glb -o shoe.png --variant street --camera 1");
+      "  alhazen render shoe.glb -o shoe.png --variant street --camera 1\n"
+      "  alhazen render scene.glb -o scene.png --watertight");
   return {command, [arguments] { return run_render(*arguments); }};
 }
 

@@ -88,11 +88,10 @@ size_t count_blocked(RTCScene scene, const RayWave& wave, Coherence coherence) {
 
 }  // namespace
 
-EmbreeBaseline::EmbreeBaseline(const Geometry& geometry)
+EmbreeBaseline::EmbreeBaseline(const Geometry& geometry, bool robust)
     : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)), width_(embree::packet_width(device_)) {
-  // As ours: robust, medium quality.
-  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
+  rtcSetSceneFlags(scene_, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+  rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);  // as ours
   for (const MeshInstance& instance : geometry.mesh_instances) {
     if (!(instance.world_from_object == Affine3d{})) stop("only meshes placed by the identity");
     for (const TriangleMesh& part : geometry.meshes[instance.mesh].parts) attach_triangles(device_, scene_, part);
@@ -107,16 +106,20 @@ EmbreeBaseline::~EmbreeBaseline() {
   rtcReleaseDevice(device_);
 }
 
-size_t EmbreeBaseline::intersect(const RayWave& rays_world, Coherence coherence) const {
-  return width_ == 16  ? count_hits<16>(scene_, rays_world, coherence)
-         : width_ == 8 ? count_hits<8>(scene_, rays_world, coherence)
-                       : count_hits<4>(scene_, rays_world, coherence);
+size_t EmbreeBaseline::intersect(const RayWave& rays_world, Coherence coherence, Call call) const {
+  const int width = call == Call::single ? 1 : width_;
+  return width == 16  ? count_hits<16>(scene_, rays_world, coherence)
+         : width == 8 ? count_hits<8>(scene_, rays_world, coherence)
+         : width == 4 ? count_hits<4>(scene_, rays_world, coherence)
+                      : count_hits<1>(scene_, rays_world, coherence);
 }
 
-size_t EmbreeBaseline::occluded(const RayWave& rays_world, Coherence coherence) const {
-  return width_ == 16  ? count_blocked<16>(scene_, rays_world, coherence)
-         : width_ == 8 ? count_blocked<8>(scene_, rays_world, coherence)
-                       : count_blocked<4>(scene_, rays_world, coherence);
+size_t EmbreeBaseline::occluded(const RayWave& rays_world, Coherence coherence, Call call) const {
+  const int width = call == Call::single ? 1 : width_;
+  return width == 16  ? count_blocked<16>(scene_, rays_world, coherence)
+         : width == 8 ? count_blocked<8>(scene_, rays_world, coherence)
+         : width == 4 ? count_blocked<4>(scene_, rays_world, coherence)
+                      : count_blocked<1>(scene_, rays_world, coherence);
 }
 
 }  // namespace alhazen

@@ -3,36 +3,29 @@
 
 #include "accel/accelerated_scene.h"
 #include "bench/baseline.h"
-#include "bench/pairs.h"
+#include "bench/contest.h"
 #include "bench/scenes.h"
 
 namespace alhazen {
 namespace {
 
-void register_build(const std::string& scene, const std::string& embree, const std::string& ours, size_t primitives,
-                    const std::function<Geometry()>& make) {
+void register_build(const std::string& scene, size_t primitives, const std::function<Geometry()>& make) {
   const auto prepare = [=](const auto& build) {
     const auto geometry = std::make_shared<const Geometry>(make());
     return Work{[=] { build(*geometry); }, double(primitives)};
   };
-  register_pair({"build/" + scene + "/" + embree, "build/" + scene + "/" + ours, "Mprim/s",
-                 [=] { return prepare([](const Geometry& g) { EmbreeBaseline{g}; }); },
-                 [=] { return prepare([](const Geometry& g) {
-                         AcceleratedScene{g, {}};
-                       }); }});
-}
-
-Geometry hill_scene(int cells) {
-  Geometry geometry;
-  geometry.meshes.push_back({"hills", {hills(cells)}});
-  geometry.mesh_instances.push_back({0, 0, {}});
-  return geometry;
+  register_contest({"build/" + scene,
+                    "Mprim/s",
+                    Clock::wall,
+                    [=] { return prepare([](const Geometry& g) {
+                            AcceleratedScene{g, {}};
+                          }); },
+                    {{"embree", [=] { return prepare([](const Geometry& g) { EmbreeBaseline{g}; }); }}}});
 }
 
 [[maybe_unused]] const bool registered = [] {
-  register_build("triangles/1000000", "embree", "alhazen", 1'000'000, [] { return hill_scene(707); });
-  register_build("sphere/1000000", "embree_builtin", "user_geometry", 1'000'000,
-                 [] { return sphere_field(1'000'000); });
+  register_build("triangles/1000000", 1'000'000, [] { return geometry_of(hills(707)); });
+  register_build("sphere/1000000", 1'000'000, [] { return sphere_field(1'000'000); });
   return true;
 }();
 

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "bench/baseline.h"
-#include "bench/pairs.h"
+#include "bench/contest.h"
 #include "bench/scenes.h"
 #include "renderer/render.h"
 
@@ -62,10 +62,13 @@ void render_frame(Integrator integrator) {
   const auto baseline = [=] { return stage(), Work{trace_camera_rays, pixels}; };
   for (const auto& [name, integrator] :
        {std::pair{"signature", Integrator::signature}, {"whitted", Integrator::whitted}})
-    register_pair({scene + "embree_camera_rays/for_" + name, scene + name + "/1spp", "Mpixel/s", baseline,
-                   [=, integrator = integrator] {
-                     return stage(), Work{[=] { render_frame(integrator); }, pixels};
-                   }});
+    register_contest({scene + name + "/1spp",
+                      "Mpixel/s",
+                      Clock::wall,
+                      [=, integrator = integrator] {
+                        return stage(), Work{[=] { render_frame(integrator); }, pixels};
+                      },
+                      {{"embree_camera_rays", baseline}}});
   return true;
 }();
 

@@ -1,6 +1,7 @@
 #include "bench/scenes.h"
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace alhazen {
@@ -39,10 +40,41 @@ Geometry as_quadrics(Geometry spheres) {
     Quadric quadric;
     quadric.coefficients[9] = -r * r;
     quadric.box = *ellipsoid_bounds(quadric.coefficients);
-    quadric.solid = true;
+    quadric.solid = quadric.whole = true;
     shape = quadric;
   }
   return spheres;
+}
+
+HexagonField hexagon_field(int count) {
+  HexagonField field;
+  TriangleMesh mesh;
+  std::mt19937 rng(3);
+  std::uniform_real_distribution<double> u(-1, 1);
+  const double radius = 1.4 / std::sqrt(double(count));
+  for (int i = 0; i < count; ++i) {
+    const Vec3d center{u(rng), u(rng), u(rng)}, n = normalize(Vec3d{u(rng), u(rng), u(rng)});
+    const Vec3d x = normalize(cross(n, Vec3d{0.3, 0.5, 0.8})), y = cross(n, x);
+    const auto first = uint32_t(mesh.positions.size());
+    std::vector<Vec3d> corners;
+    for (int k = 0; k < 6; ++k) {
+      const double angle = k * std::numbers::pi / 3;
+      mesh.positions.push_back(Vec3f(center + (x * std::cos(angle) + y * std::sin(angle)) * radius));
+      corners.push_back(Vec3d(mesh.positions.back()));
+    }
+    for (uint32_t k = 1; k + 1 < 6; ++k) mesh.triangles.push_back({first, first + k, first + k + 1});
+    field.polygons.shapes.push_back(make_polygon({corners}));
+    field.polygons.shape_instances.push_back({uint32_t(i), uint32_t(i), 0, {}});
+  }
+  field.triangles = geometry_of(std::move(mesh));
+  return field;
+}
+
+Geometry geometry_of(TriangleMesh mesh) {
+  Geometry geometry;
+  geometry.meshes.push_back({"", {std::move(mesh)}});
+  geometry.mesh_instances.push_back({0, 0, {}});
+  return geometry;
 }
 
 TriangleMesh hills(int cells) {

@@ -14,8 +14,17 @@ namespace alhazen {
 /// The same with its spheres given by ten coefficients.
 [[nodiscard]] Geometry as_quadrics(Geometry spheres);
 
+/// `count` hexagons in the cube [-1, 1]³, of any orientation: as polygons, and as a mesh of four triangles each.
+struct HexagonField {
+  Geometry polygons, triangles;
+};
+[[nodiscard]] HexagonField hexagon_field(int count);
+
 /// A square [-1, 1]² of rolling hills about y = 0, 2 `cells`² triangles.
 [[nodiscard]] TriangleMesh hills(int cells);
+
+/// The mesh alone, in its place.
+[[nodiscard]] Geometry geometry_of(TriangleMesh mesh);
 
 /// Ten by ten spheres over hills, half of them mirrors, under a point light.
 [[nodiscard]] Scene spheres_over_hills();

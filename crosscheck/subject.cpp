@@ -110,6 +110,8 @@ Surface make_quadric(Random& random, bool lattice) {
     q.coefficients[9] = as_float(q.coefficients[9] * 0.3);
   }
   q.solid = random.coin();
+  if (const auto box = ellipsoid_bounds(q.coefficients); box && q.coefficients[0] > 0 && random.coin())
+    q.box = *box, q.whole = true;
   return q;
 }
 

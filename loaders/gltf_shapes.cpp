@@ -96,7 +96,7 @@ Shape read_quadric(const JsonRef& r, ShapeReader&) {
   const bool inside_is_bounded = c[0] > 0;
   if (quadric.solid && !inside_is_bounded)
     r.fail("`bounds` is missing, and f < 0 outside of the ellipsoid: expected `bounds` or the other sign");
-  quadric.box = *box;
+  quadric.box = *box, quadric.whole = true;
   quadric.solid = inside_is_bounded;  // a whole ellipsoid is a closed body of its own accord
   return quadric;
 }

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "accel/shape_hits.h"
 #include "core/fork_join.h"
 #include "core/sampling.h"
 #include "renderer/camera_cell.h"
@@ -58,9 +59,14 @@ struct CellWorker {
   /// Fills the cell's pixels; false where it was stopped before they were finished, and left them empty.
   [[nodiscard]] bool trace(const Cell& cell, WaveArena& arena) const {
     if (control.stop) return false;
-    if (options.integrator == Integrator::whitted) return whitted(cell, arena);
-    signature(cell, arena);
-    return true;
+    const uint64_t doubts_before = doubt_counts().quad;
+    bool finished = true;
+    if (options.integrator == Integrator::whitted)
+      finished = whitted(cell, arena);
+    else
+      signature(cell, arena);
+    control.doubts += doubt_counts().quad - doubts_before;
+    return finished;
   }
 
   void signature(const Cell& cell, WaveArena& arena) const {

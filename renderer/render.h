@@ -30,6 +30,7 @@ struct RenderControl {
   std::atomic<uint64_t> pixels_done{0};
   std::atomic<uint64_t> camera_rays{0}, shadow_rays{0}, mirror_rays{0}, refracted_rays{0};
   std::atomic<uint64_t> dropped_samples{0};  // not finite
+  std::atomic<uint64_t> doubts{0};           // crossings that doubles alone did not settle
 };
 
 /// Stopped early, every pixel is what the complete picture has there, or empty: 0 with alpha 0, or no node.

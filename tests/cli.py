@@ -36,6 +36,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(fractions, sorted(fractions))
         self.assertEqual((facts["event"], facts["pixels"]), ("done", 480 * 270))
         self.assertEqual(facts["rays"]["camera"], 480 * 270 * 8)
+        self.assertLess(facts["doubts"], 1e-4 * sum(facts["rays"].values()))
         self.assertEqual(set(facts["seconds"]), {"load", "build", "render", "write"})
         self.assertEqual(result.stderr, "")
 

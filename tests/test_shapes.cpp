@@ -74,6 +74,11 @@ Quadric random_shape(Random& random) {
   for (double& c : q.coefficients) c = random.uniform(0, 1) < 0.2 ? 0 : random.uniform();
   q.coefficients[9] *= 0.3;
   q.solid = random.coin();
+  if (random.uniform(0, 1) > 0.3) return q;
+  // A whole ellipsoid.
+  for (size_t k = 0; k < 9; ++k) q.coefficients[k] = k < 3 ? random.uniform(1, 2) : 0.3 * q.coefficients[k];
+  q.coefficients[9] = -random.uniform(0.1, 1);
+  q.box = *ellipsoid_bounds(q.coefficients), q.whole = true;
   return q;
 }
 template <>

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <numbers>
 
 #include "accel/shapes/triangle.h"
@@ -79,6 +80,46 @@ TEST(Triangle, KeepsItsErrorBoundsOnLinesThatAreRoundedThemselves) {
     if (HasFailure()) FAIL() << "line " << i;
   }
   EXPECT_GT(sure, 5000);
+}
+
+template <int N>
+void expect_lanes_to_cross(const Triangle& t, const std::vector<FloatLine>& lines, uint32_t crossing) {
+  for (size_t first = 0; first < lines.size(); first += N) {
+    const auto lanes = [&](auto component) {
+      return FloatLanes<N>([&](auto i) { return component(lines[first + i]); });
+    };
+    const Vec3<FloatLanes<N>> o{lanes([](const FloatLine& l) { return l.origin.x; }),
+                                lanes([](const FloatLine& l) { return l.origin.y; }),
+                                lanes([](const FloatLine& l) { return l.origin.z; })};
+    const Vec3<FloatLanes<N>> d{lanes([](const FloatLine& l) { return l.direction.x; }),
+                                lanes([](const FloatLine& l) { return l.direction.y; }),
+                                lanes([](const FloatLine& l) { return l.direction.z; })};
+    const uint32_t missing = crossing >> first & ~lanes_that_may_cross<N>(t, o, d) & ((uint64_t(1) << N) - 1);
+    EXPECT_EQ(missing, 0u);
+  }
+}
+
+TEST(Triangle, NoLookInFloatsLeavesOutALineThatCrosses) {
+  Rng rng(14);
+  int crossings_seen = 0, left_out = 0;
+  for (int i = 0; i < 4000; ++i) {
+    Vec3d middle;
+    const Triangle t = random_triangle(rng, i % 4, middle);
+    std::vector<FloatLine> lines;
+    uint32_t crossing = 0, sure = 0;
+    for (uint32_t k = 0; k < 16; ++k) {
+      lines.push_back(awkward_line(rng, int(k) % kAwkwardKinds, random_target(rng, t), middle));
+      crossing |= uint32_t(exactly_hit(t, lines.back())) << k;
+      const Vec3<FloatLanes<1>> o(lines.back().origin), d(lines.back().direction);
+      sure |= (lanes_that_may_cross<1>(t, o, d) & 1) << k;
+    }
+    crossings_seen += std::popcount(crossing), left_out += 16 - std::popcount(sure);
+    expect_lanes_to_cross<1>(t, lines, crossing), expect_lanes_to_cross<4>(t, lines, crossing);
+    expect_lanes_to_cross<8>(t, lines, crossing), expect_lanes_to_cross<16>(t, lines, crossing);
+    if (HasFailure()) FAIL() << "triangle " << i;
+  }
+  EXPECT_GT(crossings_seen, 10000);
+  EXPECT_GT(left_out, 10000);
 }
 
 // ---- closed meshes

@@ -9,14 +9,6 @@ Vec3d point_of(const LineMap<double>& object_from_world, const Rayf& ray, float 
   return map_point(object_from_world, Vec3d(ray.origin) + Vec3d(ray.direction) * double(t));
 }
 
-/// The weights of the second and third vertex at a point of the triangle's plane, by the areas opposite to them.
-Vec2f barycentric(const Triangle& triangle, const Vec3d& p) {
-  const auto& [a, b, c] = triangle;
-  const Vec3d n = cross(b - a, c - a);
-  const double area = dot(n, n);
-  return {float(dot(n, cross(a - c, p - c)) / area), float(dot(n, cross(b - a, p - a)) / area)};
-}
-
 Bounds3d bounds_of(const Mesh& mesh) {
   Bounds3d box;
   for (const TriangleMesh& part : mesh.parts)
@@ -100,8 +92,8 @@ void PlacedObjects::append_mesh_hits(uint32_t object, const Rayf& ray, std::vect
       found.clear();
       alhazen::append_hits(triangle, map, instance.world_from_object, ray, found);
       for (const ShapeHit& hit : found) {
-        const Vec2f uv = barycentric(triangle, point_of(map, ray, hit.t));
-        append_if_present({hit.t, {object, part, i, uv.x, uv.y, {}}}, hits);
+        const Vec2d uv = weights_at(triangle, point_of(map, ray, hit.t));
+        append_if_present({hit.t, {object, part, i, float(uv.x), float(uv.y), {}}}, hits);
       }
     }
   }

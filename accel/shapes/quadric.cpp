@@ -120,6 +120,22 @@ Bounds3d bounds(const Quadric& quadric) noexcept {
   return box;
 }
 
+double reach_from(const Quadric& quadric, const Vec3d& p_object) noexcept {
+  const auto& q = quadric.coefficients;
+  const double side = q[0] < 0 && !quadric.solid ? -1 : 1;  // the wall is that of -f, too
+  const double xy = std::abs(q[3]), xz = std::abs(q[4]), yz = std::abs(q[5]), rounding = 0x1p-46;
+  const double form = std::abs(q[0]) + std::abs(q[1]) + std::abs(q[2]) + 2 * (xy + xz + yz);
+  const double linear = std::abs(q[6]) + std::abs(q[7]) + std::abs(q[8]), size = max_component(abs(p_object));
+  // No eigenvalue is less than this (Gershgorin's circles).
+  const double least =
+      std::min(side * q[0] - xy - xz, std::min(side * q[1] - xy - yz, side * q[2] - xz - yz)) - form * rounding;
+  if (!(least > 0)) return HUGE_VAL;
+  // f(p + s) = s'Qs + 2 g·s + f(p) <= 0 only for least |s|² - 2 |g| |s| + f(p) <= 0.
+  const double g = length(half_gradient(quadric, p_object)) + (form * size + linear) * rounding;
+  const double f = side * value(quadric, p_object) - ((form * size + 2 * linear) * size + std::abs(q[9])) * rounding;
+  return (g + std::sqrt(std::max(g * g - least * f, 0.0))) / least * (1 + rounding);
+}
+
 Vec3d project(const Quadric& quadric, const Vec3d& p_object, int face) noexcept {
   Vec3d p = p_object;
   if (face != kWallFace) {

@@ -14,6 +14,7 @@ struct Quadric {
   std::array<double, 10> coefficients{1, 1, 1, 0, 0, 0, 0, 0, 0, -1};  // A ... J
   Bounds3d box{{-1, -1, -1}, {1, 1, 1}};  // finite; a whole ellipsoid lies within it and is not cut
   bool solid = false;                     // { f <= 0 } within the box is a closed body
+  bool whole = false;                     // an ellipsoid that the box does not cut: said so, it costs less
 };
 
 /// The box of an ellipsoid's surface, a little enlarged (its centre alone where nothing of it is real); none where
@@ -32,12 +33,18 @@ template <class N>
 /// Solid, where a line enters and leaves the body; open, where it meets the surface within the closed box.
 template <class T>
 [[nodiscard]] LineCrossings<T> crossings(const Quadric& quadric, const ObjectLine<T>& line) {
-  return body_crossings<BodyForm::general>(quadric_body<CoefficientOf<T>>(quadric), line);
+  const auto body = quadric_body<CoefficientOf<T>>(quadric);
+  return quadric.whole ? body_crossings<BodyForm::whole>(body, line) : body_crossings<BodyForm::general>(body, line);
 }
 [[nodiscard]] std::vector<ExactCrossing> exact_crossings(const Quadric& quadric, const ExactLine& line);
 
 /// Tight up to 1 % of the box where the surface leaves parts of it empty; empty where nothing can be hit.
 [[nodiscard]] Bounds3d bounds(const Quadric& quadric) noexcept;
+
+/// No point of the shape is further from `p_object`, by the form's eigenvalues alone: infinite where they do not bound
+/// it.
+[[nodiscard]] double reach_from(const Quadric& quadric, const Vec3d& p_object) noexcept;
+
 [[nodiscard]] Vec3d project(const Quadric& quadric, const Vec3d& p_object, int face) noexcept;
 
 /// ∇f / |∇f|, towards f > 0; on a cap, the box face's. On a double plane, that plane's; zero at other singular points.

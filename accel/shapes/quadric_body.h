@@ -2,6 +2,7 @@
 // a line. As a closed body it is entered and left; open, only the wall f = 0 inside the box is there.
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace alhazen {
 enum class BodyForm {
   revolution,  // x² + z² + b y² + 2 h y + j between two planes y = const
   box,         // no wall
+  whole,       // all ten coefficients, no plane
   general,     // all ten coefficients and all six planes
 };
 
@@ -183,12 +185,13 @@ ErrorQuadratic<T> quadratic_along(const QuadricBody<N>& q, const ObjectLine<T>& 
                 2 * (std::abs(double(q.d)) + std::abs(double(q.e)) + std::abs(double(q.f)));
     linear_size = std::abs(double(q.g)) + std::abs(double(q.h)) + std::abs(double(q.i));
   }
-  // |x'Qy| <= form_size |x| |y| in the largest norm; 16 roundings cover the sums, the products and the coefficients.
-  const T gradient_size = p_size * form_size + T(linear_size), pe = p_error + p_size * (16 * u),
-          de = d_error + d_size * (16 * u);
+  // |x'Qy| <= form_size |x| |y| in the largest norm. A coefficient is off by at most 5 roundings; sums and products
+  // round 6 times in a, 7 times in b, 8 times in c. Each vector bears 6 of them.
+  const T gradient_size = p_size * form_size + T(linear_size), pe = p_error + p_size * (6 * u),
+          de = d_error + d_size * (6 * u);
   r.a_error = de * d_size * (2.5 * form_size);
-  r.b_error = gradient_size * de + d_size * (pe * form_size) * 1.25 + T(linear_size * 16 * u) * d_size;
-  r.c_error = (gradient_size + T(linear_size)) * pe * 2.5 + T(j_size * 16 * u) + p_error * p_error * form_size;
+  r.b_error = gradient_size * de + d_size * (pe * form_size) * 1.25 + T(linear_size * 10 * u) * d_size;
+  r.c_error = (gradient_size + T(linear_size)) * pe * 2.5 + T(j_size * 8 * u) + p_error * p_error * form_size;
   return r;
 }
 
@@ -258,6 +261,17 @@ void write_open(const QuadraticRoots<T>& root, const SlabInterval<T>& slab, cons
         (between && leave_there) || (!between && enter_there));
 }
 
+/// The wall alone, of a body without planes.
+template <class T>
+void write_whole(const QuadraticRoots<T>& root, const CrossingWriter<T>& write) {
+  const auto between = root.enter < root.leave;
+  const T wall(kWallFace);
+  write(0, select(between, root.enter, root.leave), select(between, root.enter_error, root.leave_error), wall,
+        root.exist);
+  write(1, select(between, root.leave, root.enter), select(between, root.leave_error, root.enter_error), wall,
+        root.exist);
+}
+
 /// The closed body: between the roots one interval, outside of them two; without roots all of the box or nothing.
 template <class T>
 void write_solid(const QuadraticRoots<T>& root, const SlabInterval<T>& slab, const MaskOf<T>& inside_without_roots,
@@ -296,8 +310,14 @@ template <BodyForm kForm, class T, class N>
                        T((body.lower.z + body.upper.z) * 0.5)};
   const T t0 = dot(center - line.origin, line.direction) / dot(line.direction, line.direction);
   const ObjectLine<T> local = moved_origin(line, t0);
-  const SlabInterval<T> slab = slab_interval<T, kForm>(body, local);
   const CrossingWriter<T> write{out, t0};
+  if constexpr (kForm == BodyForm::whole) {
+    const QuadraticRoots<T> root = roots(quadratic_along<T, kForm>(body, local), T(HUGE_VAL));
+    out.doubtful = root.doubtful;
+    write_whole(root, write);
+    return out;
+  }
+  const SlabInterval<T> slab = slab_interval<T, kForm>(body, local);
   out.doubtful = slab.doubtful;
   if constexpr (kForm == BodyForm::box) {
     write(0, slab.enter, slab.enter_error, slab.enter_face, !slab.empty);

@@ -30,7 +30,7 @@ template <class T>
   const T o_size = largest(o), d_size = largest(d), oe = largest(line.origin_error), de = largest(line.direction_error);
   const T inverse = T(1) / dot(d, d), t0 = -(dot(o, d) * inverse), t0_size = absolute(t0);
   const Vec3<T> p = o + d * t0;
-  const T p_error = oe + o_size * (3 * u) + t0_size * (de + d_size * (3 * u));
+  const T p_error = oe + o_size * (1.1 * u) + t0_size * (de + d_size * (2.1 * u));
   const T radius(sphere.radius), squared = radius * radius, gap = squared - dot(p, p);
   const T gap_error = (largest(p) * 7 + p_error * 3) * p_error + squared * (8 * u);
   // How far t0 may be from the middle of the chord, and half of the chord.
