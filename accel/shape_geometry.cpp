@@ -7,6 +7,7 @@
 #include <string>
 
 #include "accel/packet.h"
+#include "accel/traversal_bounds.h"
 #include "accel/wave_query.h"
 #include "core/error.h"
 #include "core/fork_join.h"
@@ -16,13 +17,6 @@ namespace {
 
 constexpr double kLargestCoordinate = 1.844e18;  // beyond it, Embree drops primitives without a word
 // The functions on lanes are flattened: a call for each operation on vectors would cost more than the operation.
-
-/// The largest float not above, the smallest not below.
-float round_down(double x) {
-  const float f = float(x);
-  return double(f) > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
-}
-float round_up(double x) { return -round_down(-x); }
 
 Bounds3d object_bounds(const PlacedShape& placed) {
   return std::visit([](const auto& shape) { return bounds(shape); }, *placed.shape);
@@ -41,10 +35,8 @@ Bounds3d conservative_bounds(const PlacedShape& placed, const Bounds3d& object) 
 void write_bounds(const RTCBoundsFunctionArguments* args) {
   const ShapeGroup& group = *static_cast<const ShapeGroup*>(args->geometryUserPtr);
   const PlacedShape& placed = group.members[args->primID].placed;
-  const Bounds3d b = conservative_bounds(placed, object_bounds(placed));
-  args->bounds_o->lower_x = round_down(b.lower.x), args->bounds_o->upper_x = round_up(b.upper.x);
-  args->bounds_o->lower_y = round_down(b.lower.y), args->bounds_o->upper_y = round_up(b.upper.y);
-  args->bounds_o->lower_z = round_down(b.lower.z), args->bounds_o->upper_z = round_up(b.upper.z);
+  const Bounds3f b = traversal_bounds(conservative_bounds(placed, object_bounds(placed)));
+  *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
 }
 
 template <class Arguments>
@@ -190,8 +182,14 @@ Callbacks callbacks_for(size_t kind, std::index_sequence<kKind...>) {
   return table[kind];
 }
 
+<<<<<<< HEAD
 void check_reach(const Geometry& geometry, uint32_t object, const Bounds3d& b) {
   const double reach = std::max(max_component(abs(b.lower)), max_component(abs(b.upper)));
+=======
+void check_reach(const Geometry& geometry, const ShapeGroup::Member& member, const Bounds3d& world) {
+  const Bounds3f b = traversal_bounds(world);
+  const auto reach = double(std::max(max_component(abs(b.lower)), max_component(abs(b.upper))));
+>>>>>>> 905a69e (Check closed meshes and spawned rays; boxes that traversal of user geometries does not pass by)
   if (!(reach < kLargestCoordinate))
     throw Error("the shape of node " + std::to_string(node_of(geometry, object)) +
                     " reaches further than 1.8e18 from the origin, more than traversal can hold",

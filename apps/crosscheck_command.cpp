@@ -14,6 +14,7 @@
 #include "apps/interruption.h"
 #include "apps/render_arguments.h"
 #include "core/error.h"
+#include "crosscheck/extra_report.h"
 #include "crosscheck/report.h"
 #include "loaders/image_file.h"
 
@@ -112,6 +113,26 @@ void write_map(const std::string& file, const CrosscheckMap& map) {
     std::printf("The map has no legend, as there is no font to write it with:\n%s", map.legend().c_str());
 }
 
+/// Closed meshes and spawned rays. Returns the number of failures.
+uint64_t check_wholes(const CrosscheckTarget& target, const Options& options) {
+  const auto stop = [] { return g_stop.load(); };
+  uint64_t failures = 0;
+  const auto say = [&](const std::string& row, uint64_t wrong) {
+    std::printf("%s", row.c_str());
+    std::fflush(stdout);
+    failures += wrong;
+  };
+  if (target.meshes) {
+    say("\n" + mesh_head(), 0);
+    check_meshes(options.rays, options.seed, stop, [&](const MeshTally& t) { say(mesh_row(t), t.failures()); });
+  }
+  if (target.spawning) {
+    say("\n" + spawn_head(), 0);
+    check_spawning(options.rays, options.seed, stop, [&](const SpawnTally& t) { say(spawn_row(t), t.self_hits); });
+  }
+  return failures;
+}
+
 int run_crosscheck(CrosscheckArguments& arguments) {
   Options& options = arguments.options;
   options.t_tolerance_a = arguments.t_ulp;
@@ -124,20 +145,23 @@ int run_crosscheck(CrosscheckArguments& arguments) {
   if (!arguments.map.empty()) session.map = new_map(arguments.map, target);
   stop_on_signal(g_stop);
 
-  std::printf("%s", table_head().c_str());
+  const bool has_table = !target.families.empty() || target.picture;
+  if (has_table) std::printf("%s", table_head().c_str());
   for (const Family& family : target.families)
     for (const Population population : target.populations)
       session.run(family.name, population,
                   [&](const Observer& observer) { return check(family, population, options, observer); });
   PictureTally picture;
   if (target.picture) check_picture(session, picture);
-  std::printf("%s\n%s", table_row("all", "", session.total).c_str(), session.relations.text().c_str());
+  if (has_table) std::printf("%s", table_row("all", "", session.total).c_str());
+  const uint64_t wrong_wholes = check_wholes(target, options);
+  std::printf("\n%s", session.relations.text().c_str());
   std::printf("%s", session.faults.text().c_str());
   if (picture.pixels > 0) std::printf("%s", picture_text(picture, session.source(Population::camera)).c_str());
   session.records.close();
   if (session.map) write_map(arguments.map, *session.map);
   if (caught_signal() != 0) return 128 + caught_signal();
-  return session.total.failures() > 0 ? kIntersectorWrong : int(ExitStatus::done);
+  return session.total.failures() + wrong_wholes > 0 ? kIntersectorWrong : int(ExitStatus::done);
 }
 
 }  // namespace

@@ -14,7 +14,8 @@ namespace {
 
 using namespace crosscheck;
 
-constexpr const char* kWholeScene = "scene";  // the --shape of camera rays
+constexpr const char* kWholeScene = "scene";                   // the --shape of camera rays
+constexpr const char *kMeshes = "mesh", *kSpawning = "spawn";  // the --shape of what is judged as a whole
 constexpr size_t kMostNamesListed = 30;
 
 std::vector<Family> families_named(const std::vector<Family>& families, const std::string& name) {
@@ -68,9 +69,14 @@ CrosscheckTarget plugin_target(const CrosscheckArguments& arguments) {
 CrosscheckTarget built_in_target(const CrosscheckArguments& arguments) {
   CrosscheckTarget target;
   target.families = families_named(built_in_families(), arguments.shape);
-  if (target.families.empty()) refuse_shape(arguments.shape, names_of(built_in_families()));
   target.populations = populations_named(arguments.population, false);
-  return target;
+  const bool whole = arguments.population == "all" && !arguments.options.only, all = arguments.shape == "all";
+  target.meshes = whole && (all || arguments.shape == kMeshes);
+  target.spawning = whole && (all || arguments.shape == kSpawning);
+  if (!target.families.empty() || target.meshes || target.spawning) return target;
+  std::vector<std::string> names = names_of(built_in_families());
+  if (whole) names.insert(names.end(), {kMeshes, kSpawning});
+  refuse_shape(arguments.shape, names);
 }
 
 void add_picture(const CrosscheckArguments& arguments, CrosscheckTarget& target) {

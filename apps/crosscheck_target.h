@@ -26,6 +26,7 @@ struct CrosscheckTarget {
   std::string source;  // the arguments that name it, with a space in front
   std::vector<crosscheck::Family> families;
   std::vector<crosscheck::Population> populations;  // of the families
+  bool meshes = false, spawning = false;            // of the built-in checks, those of no family
   std::unique_ptr<crosscheck::Plugin> plugin;
   std::unique_ptr<Scene> scene;
   std::unique_ptr<crosscheck::SceneCheck> picture;  // where camera rays are wanted

@@ -18,6 +18,16 @@ namespace alhazen::crosscheck {
   return device.get();
 }
 
+/// The ray that a user geometry is asked about.
+[[nodiscard]] inline Rayf ray_of(const RTCIntersectFunctionNArguments* args, unsigned lane) {
+  RTCRayN* ray = RTCRayHitN_RayN(args->rayhit, args->N);
+  const unsigned n = args->N;
+  return {{RTCRayN_org_x(ray, n, lane), RTCRayN_org_y(ray, n, lane), RTCRayN_org_z(ray, n, lane)},
+          {RTCRayN_dir_x(ray, n, lane), RTCRayN_dir_y(ray, n, lane), RTCRayN_dir_z(ray, n, lane)},
+          RTCRayN_tnear(ray, n, lane),
+          RTCRayN_tfar(ray, n, lane)};
+}
+
 /// Owns a scene.
 class EmbreeScene {
  public:

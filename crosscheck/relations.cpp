@@ -32,6 +32,15 @@ std::optional<Rayf> exact_ray(const Vec3d& origin, const Vec3d& direction, doubl
   return exact && in_domain(ray) ? std::optional(ray) : std::nullopt;
 }
 
+/// Whether a + b is a double.
+bool adds_exactly(double a, double b) {
+  const double sum = a + b, of_b = sum - a;
+  return (a - (sum - of_b)) + (b - of_b) == 0;
+}
+bool adds_exactly(const Vec3d& a, const Vec3d& b) {
+  return adds_exactly(a.x, b.x) && adds_exactly(a.y, b.y) && adds_exactly(a.z, b.z);
+}
+
 Vec3d renamed(const Vec3d& v) { return {v.z, v.x, v.y}; }
 
 Affine3d scaled(const Affine3d& m, double factor) {
@@ -172,12 +181,11 @@ class Relations {
     if (!is_finite(o)) return;
     const Vec3d by{leading_power(o.x), leading_power(o.y), leading_power(o.z)};
     Subject there = subject_;
+    if (!adds_exactly(there.world_from_object.origin, by)) return;
     there.world_from_object.origin += by;
-    if (there.world_from_object.origin - by != subject_.world_from_object.origin) return;
     ask(Relation::moved, there, questions([&](const Rayf& r) -> std::optional<Rayf> {
-          const Vec3d origin = Vec3d(r.origin) + by;
-          if (origin - by != Vec3d(r.origin)) return std::nullopt;
-          return exact_ray(origin, Vec3d(r.direction), r.t_min, r.t_max);
+          if (!adds_exactly(Vec3d(r.origin), by)) return std::nullopt;
+          return exact_ray(Vec3d(r.origin) + by, Vec3d(r.direction), r.t_min, r.t_max);
         }),
         1);
   }

@@ -4,6 +4,7 @@
 
 #include "accel/line_map.h"
 #include "accel/shape_hits.h"
+#include "accel/traversal_bounds.h"
 #include "crosscheck/embree_scene.h"
 #include "crosscheck/subject.h"
 
@@ -44,25 +45,20 @@ void write_bounds(const RTCBoundsFunctionArguments* args) {
   const Vec3d& origin = placed.world_from_object.origin;
   const bool exact = placed.world_from_object == Affine3d{};
   const double pad = exact ? 0 : 0x1p-48 * max_component(max(abs(origin), max(abs(b.lower), abs(b.upper))));
-  const auto down = [&](double x) { return std::nextafter(float(x - pad), -HUGE_VALF); };
-  const auto up = [&](double x) { return std::nextafter(float(x + pad), HUGE_VALF); };
-  *args->bounds_o = {down(b.lower.x), down(b.lower.y), down(b.lower.z), 0,
-                     up(b.upper.x),   up(b.upper.y),   up(b.upper.z),   0};
+  const Vec3d pads{pad, pad, pad};
+  const Bounds3f wide = traversal_bounds({b.lower - pads, b.upper + pads});
+  *args->bounds_o = {wide.lower.x, wide.lower.y, wide.lower.z, 0, wide.upper.x, wide.upper.y, wide.upper.z, 0};
 }
 
 void intersect(const RTCIntersectFunctionNArguments* args) {
   const auto& placed = *static_cast<const PlacedTriangles*>(args->geometryUserPtr);
   const Triangle& triangle = placed.triangles[args->primID];
-  RTCRayN* ray = RTCRayHitN_RayN(args->rayhit, args->N);
   RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
   for (unsigned i = 0; i < args->N; ++i) {
     if (!args->valid[i]) continue;
     embree::reject(args, i);
     const unsigned n = args->N;
-    const Rayf one{{RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)},
-                   {RTCRayN_dir_x(ray, n, i), RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i)},
-                   RTCRayN_tnear(ray, n, i),
-                   RTCRayN_tfar(ray, n, i)};
+    const Rayf one = ray_of(args, i);
     const std::optional<float> t = hit_triangle(triangle, one, placed.world_from_object);
     const bool later = t && *t == one.t_max && RTCHitN_geomID(hit, n, i) != RTC_INVALID_GEOMETRY_ID &&
                        RTCHitN_primID(hit, n, i) < args->primID;

@@ -23,7 +23,16 @@ inline constexpr int kVerdicts = 9;
   return v == Verdict::b_right || v == Verdict::both_wrong || v == Verdict::unexplained;
 }
 
-enum class Fault : uint8_t { none, false_miss, false_hit, wrong_t, wrong_face, wrong_side, wrong_normal, wrong_surface };
+enum class Fault : uint8_t {
+  none,
+  false_miss,
+  false_hit,
+  wrong_t,
+  wrong_face,
+  wrong_side,
+  wrong_normal,
+  wrong_surface
+};
 inline constexpr int kFaults = 8;
 [[nodiscard]] const char* name_of(Fault fault);
 
