@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Installs Alhazen into a folder of its own, builds the example project against it and has it checked, which must find
+# it wrong: install.sh BUILD EXAMPLE WORK
+set -euo pipefail
+build=$1 example=$2 work=$3
+rm -rf "$work"
+cmake --install "$build" --prefix "$work/prefix" >/dev/null
+cmake -S "$example" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null
+cmake --build "$work/build" >/dev/null
+status=0
+"$work/prefix/bin/alhazen" crosscheck --rays 2048 --intersector "$(find "$work/build" -name 'libnaive_sphere.so')" || status=$?
+[ "$status" = 5 ] || { echo "expected status 5, got $status"; exit 1; }
