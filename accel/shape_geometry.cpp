@@ -182,14 +182,9 @@ Callbacks callbacks_for(size_t kind, std::index_sequence<kKind...>) {
   return table[kind];
 }
 
-<<<<<<< HEAD
-void check_reach(const Geometry& geometry, uint32_t object, const Bounds3d& b) {
-  const double reach = std::max(max_component(abs(b.lower)), max_component(abs(b.upper)));
-=======
-void check_reach(const Geometry& geometry, const ShapeGroup::Member& member, const Bounds3d& world) {
+void check_reach(const Geometry& geometry, uint32_t object, const Bounds3d& world) {
   const Bounds3f b = traversal_bounds(world);
   const auto reach = double(std::max(max_component(abs(b.lower)), max_component(abs(b.upper))));
->>>>>>> 905a69e (Check closed meshes and spawned rays; boxes that traversal of user geometries does not pass by)
   if (!(reach < kLargestCoordinate))
     throw Error("the shape of node " + std::to_string(node_of(geometry, object)) +
                     " reaches further than 1.8e18 from the origin, more than traversal can hold",
