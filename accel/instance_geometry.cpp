@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "accel/traversal_bounds.h"
+
 namespace alhazen {
 namespace {
 
@@ -19,10 +21,8 @@ void write_bounds(const RTCBoundsFunctionArguments* args) {
   const Bounds3d world = transform_bounds(m, object);
   const Vec3d reach = max(abs(object.lower), abs(object.upper));
   const Vec3d margin = (abs(m.x) * reach.x + abs(m.y) * reach.y + abs(m.z) * reach.z + abs(m.origin)) * 0x1p-20;
-  const Vec3f lower(world.lower - margin), upper(world.upper + margin);
-  args->bounds_o->lower_x = lower.x, args->bounds_o->upper_x = upper.x;
-  args->bounds_o->lower_y = lower.y, args->bounds_o->upper_y = upper.y;
-  args->bounds_o->lower_z = lower.z, args->bounds_o->upper_z = upper.z;
+  const Bounds3f b = traversal_bounds({world.lower - margin, world.upper + margin});
+  *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
 }
 
 /// The lanes of a callback's packet in the space of the mesh; the direction is not made unit length, so t is shared.

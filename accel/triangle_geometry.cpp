@@ -3,6 +3,7 @@
 #include "accel/instance_geometry.h"
 #include "accel/packet.h"
 #include "accel/shape_hits.h"
+#include "accel/traversal_bounds.h"
 #include "accel/wave_query.h"
 
 namespace alhazen {
@@ -25,17 +26,15 @@ bool has_area(const Triangle& t) {
   return sgn(exact_n.x) != 0 || sgn(exact_n.y) != 0 || sgn(exact_n.z) != 0;
 }
 
-/// A little more than the triangle, since traversal rounds, and takes a ray that runs along an axis' zero for one that
-/// drifts off: a ray that meets but a vertex must still meet the box. Empty for what is never hit.
+/// Empty for what is never hit.
 void write_bounds(const RTCBoundsFunctionArguments* args) {
   const auto& group = *static_cast<const TriangleGroup*>(args->geometryUserPtr);
   const Triangle t = triangle_of(group, args->primID);
-  Bounds3d b;
-  if (is_finite(t.a) && is_finite(t.b) && is_finite(t.c) && has_area(t)) extend(b, t.a), extend(b, t.b), extend(b, t.c);
-  const double margin = is_empty(b) ? 0 : 0x1p-21 * std::max(max_component(abs(b.lower)), max_component(abs(b.upper)));
-  const Vec3d margins{margin, margin, margin};
-  const Vec3f lower(b.lower - margins), upper(b.upper + margins);
-  *args->bounds_o = {lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, 0};
+  Bounds3d box;
+  if (is_finite(t.a) && is_finite(t.b) && is_finite(t.c) && has_area(t))
+    extend(box, t.a), extend(box, t.b), extend(box, t.c);
+  const Bounds3f b = traversal_bounds(box);
+  *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
 }
 
 const LineMap<double>& identity_map() {

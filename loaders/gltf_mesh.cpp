@@ -7,8 +7,8 @@
 #include <set>
 
 #include "loaders/gltf_draco.h"
-#include "loaders/gltf_polygons.h"
 #include "loaders/gltf_layers.h"
+#include "loaders/gltf_polygons.h"
 #include "loaders/in_parallel.h"
 #include "loaders/tangents.h"
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Renders models: models.sh PROGRAM FOLDER whole|broken SECONDS. Of `broken`, what is in FOLDER/broken, each may be
-# refused, but not crash; of `whole`, everything else, each renders
-# without a warning about itself, unless it requires an extension that nobody knows. None may take more than SECONDS of processor time. Status 77: there is no such folder.
+# refused, but not crash; of `whole`, everything else, each renders without a warning about itself, unless it requires
+# an extension that nobody knows. None may take more than SECONDS of processor time. Status 77: there is no such folder.
 set -u
 program=$1 folder=$2 kind=$3 seconds=$4
 [ -d "$folder" ] || { echo "skipped: there is no $folder"; exit 77; }
