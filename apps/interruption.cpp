@@ -1,21 +1,43 @@
 #include "apps/interruption.h"
 
+#include <time.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdint>
 
 #include "loaders/part_file.h"
 
 namespace alhazen {
 namespace {
 
+/// timeout(1), shells and terminals may signal a process and then its group: what follows this soon is the same
+/// request.
+constexpr std::int64_t kOneRequestNs = 200'000'000;
+
 std::atomic<int> g_signal{0};
+std::atomic<std::int64_t> g_signal_ns{0};
 std::atomic<std::atomic<bool>*> g_stop{nullptr};
-static_assert(std::atomic<int>::is_always_lock_free && std::atomic<std::atomic<bool>*>::is_always_lock_free);
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free &&
+              std::atomic<std::atomic<bool>*>::is_always_lock_free);
+
+std::int64_t monotonic_ns() {
+  timespec now = {};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+/// Whether this is the first request to stop, or its echo. Called by handlers that do not interrupt one another.
+bool is_first_request(int signal) {
+  if (g_signal != 0) return monotonic_ns() - g_signal_ns < kOneRequestNs;
+  g_signal_ns = monotonic_ns();
+  g_signal = signal;
+  return true;
+}
 
 extern "C" void on_signal(int signal) {
   std::atomic<bool>* const stop = g_stop;
-  if (g_signal.exchange(signal) == 0 && stop) {
+  if (is_first_request(signal) && stop) {
     *stop = true;
     return;
   }
@@ -30,6 +52,7 @@ void catch_signals() {
   action.sa_handler = on_signal;
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
+  for (const int signal : {SIGINT, SIGTERM}) sigaddset(&action.sa_mask, signal);
   for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
   for (const int signal : {SIGPIPE, SIGXFSZ, SIGHUP}) std::signal(signal, SIG_IGN);
 }
