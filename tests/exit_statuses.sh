@@ -48,6 +48,7 @@ expect 4 render "$scene" -o "$work/a.unheard"
 expect 4 render "$scene" -o "$work/a.jpg" --size 65536x1
 # A signal stops at the next cell and saves what is finished: sent as soon as something is, and twice, as timeout(1) does.
 for signal in INT:130 TERM:143; do
+  : >"$work/log" # else the loop below reads the last run's
   "$program" render "$scene" -o "$work/partial.exr" --size 2048x2048 --spp 64 --progress json >"$work/log" 2>&1 &
   until grep -q '"fraction":[0-9.e-]*[1-9]' "$work/log" || ! kill -0 $! 2>/dev/null; do sleep 0.1; done
   kill -"${signal%:*}" $!
