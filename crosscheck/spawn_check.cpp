@@ -15,14 +15,29 @@ namespace {
 constexpr uint64_t kChunkRays = 2048;
 constexpr size_t kChunksAtOnce = 32;
 
+void place(const Triangle& t, const Affine3d& world_from_object, Geometry& geometry) {
+  TriangleMesh part;
+  part.positions = {Vec3f(t.a), Vec3f(t.b), Vec3f(t.c)};
+  part.triangles = {{0, 1, 2}};
+  geometry.meshes.emplace_back().parts.push_back(std::move(part));
+  geometry.mesh_instances.push_back({0, 0, world_from_object});
+}
+
+template <class S>
+void place(const S& shape, const Affine3d& world_from_object, Geometry& geometry) {
+  geometry.shapes.emplace_back(shape);
+  geometry.shape_instances.push_back({0, 0, 0, world_from_object});
+}
+
+/// Triangles come at home: every other one is to be an instance.
+Affine3d anywhere(uint64_t chunk, Random& random) {
+  return built_in_families().front().subject(chunk, false, random).world_from_object;
+}
+
+/// As the renderer has it: triangles are Embree's own.
 Geometry geometry_of(const Subject& subject) {
   Geometry geometry;
-  std::visit(
-      [&](const auto& s) {
-        if constexpr (!std::is_same_v<std::decay_t<decltype(s)>, Triangle>) geometry.shapes.emplace_back(s);
-      },
-      subject.surface);
-  geometry.shape_instances.push_back({0, 0, 0, subject.world_from_object});
+  std::visit([&](const auto& surface) { place(surface, subject.world_from_object, geometry); }, subject.surface);
   return geometry;
 }
 
@@ -42,6 +57,7 @@ class SpawnChunk {
       : family_(family), tally_(tally) {
     Random random{seed, chunk, uint64_t(family.name.size()), uint64_t(family.name.front()), 5};
     subject_ = family.subject(chunk, false, random);
+    if (family.name == "triangle" && chunk % 2) subject_.world_from_object = anywhere(chunk, random);
     scene_.geometry = geometry_of(subject_);
     const AcceleratedScene accelerated(scene_.geometry, {}, {.threads = 1});
     std::vector<Rayf> rays;
@@ -122,7 +138,8 @@ SpawnTally check_family(const Family& family, uint64_t hits, uint64_t seed, cons
 
 void check_spawning(uint64_t hits, uint64_t seed, const std::function<bool()>& stop,
                     const std::function<void(const SpawnTally&)>& done) {
-  for (const char* name : {"sphere", "ellipsoid", "cylinder", "cone", "box", "disk", "ring", "polygon", "star"})
+  for (const char* name :
+       {"sphere", "ellipsoid", "cylinder", "cone", "box", "disk", "ring", "polygon", "star", "triangle"})
     for (const Family& family : built_in_families())
       if (family.name == name && !stop()) done(check_family(family, hits, seed, stop));
 }

@@ -72,6 +72,16 @@ TEST(ShapeNormals, OfTheGradientAndOfParametricDerivativesAgree) {
   }
 }
 
+TEST(Cone, HasEveryPointBesideItsApexOnItsWallAndNotWithin) {
+  const Cylinder cone{2, 1, 0, true};  // apex at y = 1
+  for (const double y : {-1.0, 0.0, 0.9, 1 - 0x1p-20, 1.0}) {
+    const Vec3d p = project(cone, {0, y, 0}, kWallFace);  // as of a hit that rounds onto the axis
+    EXPECT_DOUBLE_EQ(std::hypot(p.x, p.z), (1 - y) / 2) << y;
+    EXPECT_GT(dot(normal(cone, p, kWallFace), p - Vec3d{0, -1, 0}), 0) << y;
+  }
+  EXPECT_EQ(normal(cone, project(cone, {0, 1, 0}, kWallFace), kWallFace), (Vec3d{0, 1, 0}));
+}
+
 TEST(ShapeTextureCoordinates, AreAsTheFormatStates) {
   const auto expect = [](const Vec2f& uv, float u, float v) {
     EXPECT_NEAR(uv.x, u, 1e-6f);

@@ -8,8 +8,9 @@ namespace {
 
 constexpr int kBottom = 2;
 
+/// Exactly 0 at an apex.
 double radius_at(const Cylinder& c, double y) {
-  return (c.radius_bottom + c.radius_top) / 2 + (c.radius_top - c.radius_bottom) / c.height * y;
+  return c.radius_top + (c.radius_bottom - c.radius_top) * ((c.height / 2 - y) / c.height);
 }
 
 }  // namespace
@@ -26,9 +27,10 @@ Bounds3d bounds(const Cylinder& cylinder) noexcept {
 Vec3d project(const Cylinder& cylinder, const Vec3d& p, int face) noexcept {
   const double h = cylinder.height / 2;
   if (face != kWallFace) return {p.x, face == kBottom ? -h : h, p.z};
-  const double distance = std::hypot(p.x, p.z), y = std::clamp(p.y, -h, h);
-  const double scale = distance > 0 ? radius_at(cylinder, y) / distance : 0;
-  return {p.x * scale, y, p.z * scale};
+  const double distance = std::hypot(p.x, p.z), y = std::clamp(p.y, -h, h), radius = radius_at(cylinder, y);
+  // A hit beside an apex may round onto the axis; any point of the wall is as near then.
+  if (!(distance > 0)) return {radius, y, 0};
+  return {p.x * (radius / distance), y, p.z * (radius / distance)};
 }
 
 Vec3d normal(const Cylinder& cylinder, const Vec3d& p, int face) noexcept {
