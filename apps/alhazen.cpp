@@ -12,6 +12,7 @@
 #include "apps/info_command.h"
 #include "apps/interruption.h"
 #include "apps/render_command.h"
+#include "apps/sheet_command.h"
 #include "apps/usage.h"
 #include "core/error.h"
 #include "loaders/image_file.h"
@@ -20,10 +21,7 @@ namespace alhazen {
 namespace {
 
 constexpr Command (*kCommands[])(CLI::App& program) = {
-    add_render_command,
-    add_info_command,
-    add_bench_command,
-    add_crosscheck_command,
+    add_render_command, add_info_command, add_sheet_command, add_bench_command, add_crosscheck_command,
 };
 
 std::string version() {

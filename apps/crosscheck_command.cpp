@@ -222,8 +222,8 @@ Command add_crosscheck_command(CLI::App& program) {
       ->check(CLI::NonNegativeNumber.description(""))
       ->capture_default_str();
   command->footer(
-      "Exit status: 0 no custom intersector is wrong, 5 some are; 2 wrong usage, 3 bad scene or library, 4 cannot\n"
-      "write, 130 or 143 interrupted, 1 other.\n"
+      "Exit status: 0 no custom intersector is wrong, 5 some are; 2 wrong usage, 3 bad scene or library,\n"
+      "4 cannot write, 130 or 143 interrupted, 1 other.\n"
       "\n"
       "Examples:\n"
       "  alhazen crosscheck --shape sphere --population silhouette --rays 1e6\n"

@@ -15,6 +15,7 @@
 #include "accel/accelerated_scene.h"
 #include "apps/exposure.h"
 #include "apps/interruption.h"
+#include "apps/peak_memory.h"
 #include "apps/pick_camera.h"
 #include "apps/picture_metadata.h"
 #include "apps/render_arguments.h"
@@ -126,10 +127,11 @@ std::string count_text(uint64_t count) {
 
 std::string facts_text(const std::string& outcome, const PhaseSeconds& seconds, int threads) {
   const RayCounts rays = ray_counts(g_control);
-  char times[128], speed[32];
+  char times[128], speed[64];
   std::snprintf(times, sizeof times, ": load %.2f s, build %.2f s, render %.2f s, write %.2f s; ", seconds.load,
                 seconds.build, seconds.render, seconds.write);
-  std::snprintf(speed, sizeof speed, "%.1f Mray/s", 1e-6 * double(rays.all()) / std::max(seconds.render, 1e-9));
+  std::snprintf(speed, sizeof speed, "%.1f Mray/s; peak %.0f MB",
+                1e-6 * double(rays.all()) / std::max(seconds.render, 1e-9), 1e-6 * double(peak_memory()));
   return outcome + times + count_text(rays.all()) + " rays (" + count_text(rays.camera) + " camera, " +
          count_text(rays.mirror) + " mirror, " + count_text(rays.refracted) + " refracted, " + count_text(rays.shadow) +
          " shadow; " + count_text(g_control.doubts) + " crossings beyond double), " + speed + "; " +
@@ -147,6 +149,7 @@ std::string facts_json(const RenderArguments& arguments, bool complete, const Ph
   json["doubts"] = g_control.doubts.load();
   json["rays"] = {
       {"camera", rays.camera}, {"mirror", rays.mirror}, {"refracted", rays.refracted}, {"shadow", rays.shadow}};
+  json["peak_bytes"] = peak_memory();
   json["threads"] = threads;
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

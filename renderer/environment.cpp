@@ -72,31 +72,47 @@ std::vector<ColorImage> pyramid(const ColorImage& image) {
   return all;
 }
 
-/// The radiance that a GGX lobe about r gathers, seen along r: facets are sampled, and each sample looks as widely as
-/// it stands for (Karis 2013; Krivanek and Colbert, "Real-time Shading with Filtered Importance Sampling", 2008).
-Rgb gathered(const std::vector<ColorImage>& levels, const Vec3f& r, float roughness) {
+/// One direction of a lobe about z.
+struct LobeSample {
+  Vec3f direction;  // unit
+  int level;        // of the pyramid: looks as widely as the sample stands for
+  float weight;     // of all samples: 1 together
+};
+
+/// A GGX lobe about the normal, seen along it: facets are sampled (Karis 2013; Krivanek and Colbert, "Real-time Shading
+/// with Filtered Importance Sampling", 2008). `levels` are the pyramid's, `pixels` those of its first.
+std::vector<LobeSample> lobe_samples(float roughness, int levels, int pixels) {
   constexpr uint32_t kSamples = 64;
-  const float alpha = roughness * roughness, a2 = alpha * alpha;
-  const ShadingFrame frame = frame_about(r);
-  const float pixel_angle = 4 * kPi / float(levels[0].width * levels[0].height);
-  Rgb sum;
-  float weight = 0;
+  const float a2 = roughness * roughness * roughness * roughness;
+  const float pixel_angle = 4 * kPi / float(pixels);
+  std::vector<LobeSample> samples;
+  float sum = 0;
   for (uint32_t i = 0; i < kSamples; ++i) {
     const Vec2f u = sobol_owen(i, 0);
     const float cos_h = std::sqrt((1 - u.x) / (1 + (a2 - 1) * u.x)),
                 sin_h = std::sqrt(std::max(0.0f, 1 - cos_h * cos_h));
-    const Vec3f h =
-        frame.t * (sin_h * std::cos(2 * kPi * u.y)) + frame.b * (sin_h * std::sin(2 * kPi * u.y)) + frame.n * cos_h;
-    const Vec3f d = normalize(2 * dot(r, h) * h - r);
-    const float cos_d = dot(r, d);
-    if (!(cos_d > 0)) continue;
+    const Vec3f h{sin_h * std::cos(2 * kPi * u.y), sin_h * std::sin(2 * kPi * u.y), cos_h};
+    const Vec3f d = 2 * cos_h * h - Vec3f{0, 0, 1};
+    if (!(d.z > 0)) continue;
     const float q = 1 + (a2 - 1) * cos_h * cos_h;
     const float probability = a2 / (kPi * q * q) / 4;  // of d: n·h = v·h here
     const float level = 0.5f * std::log2(std::max(1.0f, 4 / (float(kSamples) * probability * pixel_angle)));
-    sum += bilinear(levels[size_t(std::min(int(level), int(levels.size()) - 1))], d) * cos_d;
-    weight += cos_d;
+    samples.push_back({d, std::min(int(level), levels - 1), d.z});
+    sum += d.z;
   }
-  return weight > 0 ? sum * (1 / weight) : bilinear(levels[0], r);
+  for (LobeSample& sample : samples) sample.weight /= sum;
+  return samples;
+}
+
+/// The radiance that the lobe gathers about r.
+Rgb gathered(const std::vector<ColorImage>& levels, const std::vector<LobeSample>& lobe, const Vec3f& r) {
+  const ShadingFrame frame = frame_about(r);
+  Rgb sum;
+  for (const LobeSample& sample : lobe) {
+    const Vec3f& d = sample.direction;
+    sum += bilinear(levels[size_t(sample.level)], frame.t * d.x + frame.b * d.y + frame.n * d.z) * sample.weight;
+  }
+  return sum;
 }
 
 std::array<float, 9> harmonics_at(const Vec3f& d) {
@@ -164,8 +180,8 @@ Environment make_environment(ColorImage image) {
   for (int k = 1; k < kLevels; ++k) {
     const int width = std::max(32, 256 >> k);
     ColorImage level = blank(width, width / 2);
-    const float roughness = float(k) / (kLevels - 1);
-    fill(level, [&](int x, int y) { return gathered(source, direction_at(x, y, width, width / 2), roughness); });
+    const auto lobe = lobe_samples(float(k) / (kLevels - 1), int(source.size()), source[0].width * source[0].height);
+    fill(level, [&](int x, int y) { return gathered(source, lobe, direction_at(x, y, width, width / 2)); });
     environment.levels.push_back(std::move(level));
   }
   return environment;

@@ -38,6 +38,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(facts["rays"]["camera"], 480 * 270 * 8)
         self.assertLess(facts["doubts"], 1e-4 * sum(facts["rays"].values()))
         self.assertEqual(set(facts["seconds"]), {"load", "build", "render", "write"})
+        self.assertGreater(facts["peak_bytes"], 1e6)
         self.assertEqual(result.stderr, "")
 
     def test_nothing_but_plain_lines_without_a_terminal(self):
@@ -105,7 +106,7 @@ class CommandLine(unittest.TestCase):
             (["render", SCENE, "-o", "a.png", "--integrator", "whited"], "did you mean 'whitted'?"),
             (["render", SCENE, "-o", self.file("a.png"), "--camera", "frnt"], "the scene has 0 'front'; did you mean"),
             (["info", SCENE, "--jsn"], "did you mean '--json'?"),
-            ([], "expected a command: render, info, bench"),
+            ([], "expected a command: render, info, sheet, bench"),
         ):
             result = run(*arguments)
             self.assertEqual(result.returncode, 2, arguments)
@@ -119,8 +120,31 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(names, ["every primitive", "object boxes", "node tree", "image rectangles", "Embree"])
         self.assertEqual(run("bench").returncode, 2)
 
+    def test_a_sheet_shows_every_model_and_why_one_is_missing(self):
+        os.mkdir(self.file("models"))
+        os.symlink(os.path.dirname(SCENE), self.file("models/linked"))  # is not followed
+        for name, text in (("a.gltf", '{"asset":{"version":"2.0"}}'), ("b.gltf", "{"), ("C.GLTF", '{"asset":{"version":"2.0"}}'), ("d.txt", "")):
+            with open(self.file("models/" + name), "w", encoding="utf-8") as file:
+                file.write(text)
+        result = run("sheet", self.file("models"), "-o", self.file("s.ppm"), "--size", "40x30", "--columns", "2",
+                     "--render-options", "--background 1,0,0 --spp 2")
+        self.assertEqual(result.returncode, 3)
+        lines = result.stdout.splitlines()
+        self.assertEqual([line.split(":")[0] for line in lines], ["C.GLTF", "a.gltf", "b.gltf", "2 of 3 models rendered"])
+        self.assertRegex(lines[0], r"load [\d.]+ s, render [\d.]+ s, \d+ MB$")
+        self.assertIn("b.gltf", lines[2])
+        with open(self.file("s.ppm"), "rb") as file:
+            header, pixels = file.read().split(b"\n255\n", 1)
+        width, height = map(int, header.split()[1:3])
+        self.assertEqual((width, height), (6 + 2 * 46, 6 + 2 * 72))
+        at = lambda x, y: tuple(pixels[3 * (y * width + x):][:3])
+        self.assertEqual([at(26, 20), at(72, 20)], [(255, 0, 0)] * 2)
+        self.assertNotEqual(at(26, 92), (255, 0, 0))
+        self.assertEqual(run("sheet", self.folder.name + "/absent", "-o", self.file("s.png")).returncode, 3)
+        self.assertEqual(run("sheet", self.file("models"), "-o", self.file("x/s.png")).returncode, 4)
+
     def test_each_help_has_an_example_and_fits(self):
-        for command in ([], ["render"], ["info"], ["bench"]):
+        for command in ([], ["render"], ["info"], ["sheet"], ["bench"], ["crosscheck"]):
             text = run(*command, "--help").stdout
             self.assertIn("Example", text)
             self.assertLessEqual(max(map(len, text.splitlines())), 100)
@@ -144,8 +168,8 @@ class CommandLine(unittest.TestCase):
                     files.append(file.read())
             self.assertEqual(files[0], files[1], extension)
 
-    def test_a_second_signal_ends_at_once_and_leaves_no_half_file(self):
-        for delay in (0, 0.01, 0.1):
+    def test_a_second_signal_leaves_no_half_file(self):
+        for delay in (0, 0.01, 0.1, 0.25):
             process = subprocess.Popen([PROGRAM, "render", SCENE, "-o", self.file("a.exr"), "--size", "2048x2048",
                                         "--progress", "json"], stdout=subprocess.PIPE, text=True)
             while json.loads(process.stdout.readline())["fraction"] == 0:
