@@ -1,6 +1,8 @@
 #include "accel/accelerated_scene.h"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -39,6 +41,7 @@ struct AcceleratedScene::Impl {
   bool has_filters = false;  // surfaces that let some light through
   int width = 4;             // of coherent waves' packets
   int incoherent_width = 4;  // of others'
+  std::atomic<uint64_t> bytes{0};
 
   ~Impl() {
     if (scene) rtcReleaseScene(scene);
@@ -165,6 +168,41 @@ struct AcceleratedScene::Traversal {
     }
   }
 
+  /// The calls without their preparations.
+  template <int width>
+  static double seconds_of(const Impl& impl, const BareCall& call, const RayWave& wave) {
+    struct alignas(64) Packet {
+      typename embree::Packets<width>::RayHit rays;
+      int valid[width];
+    };
+    Lanes<Rgb> visible;
+    visible.resize(wave.size());
+    for (size_t i = 0; i < wave.size(); ++i) visible[i] = Rgb(1.0f);
+    static thread_local std::vector<Packet> packets;
+    packets.resize((wave.size() + width - 1) / width);
+    for (size_t k = 0; k < packets.size(); ++k) {
+      Packet& packet = packets[k];
+      const size_t first = k * width;
+      choose_lanes<width>(wave, first, int(std::min(size_t(width), wave.size() - first)), packet.valid);
+      for (int i = 0; i < width; ++i)
+        packet.rays.hit.geomID[i] = packet.rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+      load_rays(wave, first, width, packet.rays.ray);
+    }
+    Query query(impl, call.coherence, visible.data());
+    const auto start = std::chrono::steady_clock::now();
+    if (call.shadow)
+      for (Packet& packet : packets) embree::occluded<width>(packet.valid, impl.scene, query, packet.rays.ray);
+    else
+      for (Packet& packet : packets) embree::intersect<width>(packet.valid, impl.scene, query, packet.rays);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  /// Embree's report of memory that it takes (or gives back).
+  static bool count_bytes(void* impl, ssize_t bytes, bool) {
+    static_cast<Impl*>(impl)->bytes += uint64_t(bytes);
+    return true;
+  }
+
   static RTCScene new_scene(const Impl& impl, const BuildOptions& options) {
     RTCScene scene = rtcNewScene(impl.device);
     rtcSetSceneFlags(scene, options.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
@@ -250,6 +288,7 @@ AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter
   const std::string config = options.threads > 0 ? "threads=" + std::to_string(options.threads) : "";
   impl.device = rtcNewDevice(config.c_str());
   if (!impl.device) throw Error("Embree has no device for this CPU", ExitStatus::internal);
+  rtcSetDeviceMemoryMonitorFunction(impl.device, Traversal::count_bytes, &impl);
   impl.width = embree::packet_width(impl.device);
   impl.incoherent_width = prefers_single_rays(geometry) ? 1 : impl.width;
   impl.scene = Traversal::new_scene(impl, options);
@@ -324,6 +363,20 @@ void AcceleratedScene::transmittance(const RayWave& rays_world, Coherence cohere
 }
 
 int AcceleratedScene::packet_width() const noexcept { return impl_->width; }
+
+uint64_t AcceleratedScene::bytes() const noexcept { return impl_->bytes; }
+
+bool AcceleratedScene::allows(const BareCall& call) const noexcept {
+  if (call.width > impl_->width) return false;
+  if (!call.shadow || call.coherence == Coherence::incoherent) return true;
+  const bool hangs = embree::kCoherentOccluded16HangsOnInstances && impl_->has_instances && call.width == 16;
+  return !hangs && !impl_->has_filters;
+}
+
+double AcceleratedScene::seconds_of(const BareCall& call, const RayWave& rays_world) const {
+  return with_width(unsigned(call.width),
+                    [&](auto width) { return Traversal::seconds_of<width>(*impl_, call, rays_world); });
+}
 
 std::string traversal_version() {
   RTCDevice device = rtcNewDevice(nullptr);

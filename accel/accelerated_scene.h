@@ -17,6 +17,13 @@ struct BuildOptions {
   bool watertight = false;
 };
 
+/// One way to ask Embree about a wave.
+struct BareCall {
+  bool shadow = false;  // whether something is hit, not what
+  int width = 1;        // lanes: 1, 4, 8 or 16
+  Coherence coherence = Coherence::incoherent;
+};
+
 /// Immutable once built, so every query is safe from any thread. `geometry` and the filter's data must outlive it:
 /// vertices, indices and shapes are read in place.
 class AcceleratedScene {
@@ -37,6 +44,15 @@ class AcceleratedScene {
   void transmittance(const RayWave& rays_world, Coherence coherence, Lanes<Rgb>& visible) const noexcept;
 
   [[nodiscard]] int packet_width() const noexcept;  // lanes traced together: 4, 8 or 16
+
+  /// What Embree holds for it, in bytes, without what it reads in place.
+  [[nodiscard]] uint64_t bytes() const noexcept;
+
+  /// Whether such calls answer these rays here: no wider than native, and none that Embree hangs or counts twice in.
+  [[nodiscard]] bool allows(const BareCall& call) const noexcept;
+
+  /// Seconds that Embree's calls alone take for the rays: packets are laid out before, answers are left in them.
+  [[nodiscard]] double seconds_of(const BareCall& call, const RayWave& rays_world) const;
 
  private:
   struct Impl;

@@ -1,138 +1,125 @@
 #include "apps/bench_command.h"
 
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "accel/accelerated_scene.h"
-#include "accel/reference/ladder.h"
+#include "apps/bench_ladder.h"
+#include "apps/bench_report.h"
 #include "apps/render_arguments.h"
+#include "apps/sample_statistics.h"
+#include "apps/usage.h"
 #include "core/error.h"
-#include "loaders/gltf.h"
-#include "loaders/image_decode.h"
-#include "renderer/camera_ray.h"
-#include "renderer/render.h"
+#include "loaders/part_file.h"
 
 namespace alhazen {
 namespace {
 
-constexpr double kSecondsForEach = 2;
-constexpr size_t kShares = 64;  // of the picture's rays: the slow accelerators may see only some
-
-using Clock = std::chrono::steady_clock;
-
-void print_warning(const std::string& text) { std::fprintf(stderr, "warning: %s\n", text.c_str()); }
-
-/// One in `kShares` blocks of 4 x 4 pixels, spread over the picture; neighbours side by side.
-RayWave share_of_camera_rays(const Camera& camera, int width, int height, size_t share) {
-  const int blocks_x = (width + 3) / 4, blocks_y = (height + 3) / 4;
-  RayWave rays;
-  for (auto block = int(share); block < blocks_x * blocks_y; block += int(kShares))
-    for (int k = 0; k < 16; ++k) {
-      const int x = block % blocks_x * 4 + k % 4, y = block / blocks_x * 4 + k / 4;
-      if (x >= width || y >= height) continue;
-      rays.resize(rays.size() + 1);
-      rays.set(rays.size() - 1, camera_ray(camera, width, height, x + 0.5, y + 0.5));
-    }
-  return rays;
-}
-
-struct Cost {
-  double seconds = 0;
-  uint64_t rays = 0;
-  std::optional<TestCounts> tests;  // none where they cannot be counted
-
-  [[nodiscard]] double seconds_per_ray() const { return seconds / double(rays); }
+struct BenchArguments {
+  std::vector<std::string> scenes;
+  std::string ladder, json, before;
+  std::vector<int> threads;
+  RenderOptions options{.width = 1024, .height = 1024}, ladder_options{.width = 160, .height = 120};
+  bool has_size = false;
+  int repeats = 9;
 };
 
-/// Traces share after share until all are traced or the time is up; always one.
-template <class Trace>
-Cost measure(const std::vector<RayWave>& shares, const Trace& trace) {
-  Cost cost;
-  HitWave hits;
-  for (const RayWave& rays : shares) {
-    const auto start = Clock::now();
-    trace(rays, hits);
-    cost.seconds += std::chrono::duration<double>(Clock::now() - start).count();
-    cost.rays += rays.size();
-    if (cost.seconds > kSecondsForEach) break;
-  }
-  return cost;
+void write_json(const std::string& file, const nlohmann::ordered_json& json) {
+  PartFile part(file);
+  const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  part.write({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+  part.commit();
 }
 
-Cost cost_of(const ReferenceAccelerator& accelerator, const std::vector<RayWave>& shares) {
-  TestCounts tests;
-  Cost cost = measure(shares, [&](const RayWave& rays, HitWave& hits) { accelerator.intersect(rays, hits, tests); });
-  cost.tests = tests;
-  return cost;
+/// Frame time over that of the first number of threads.
+void print_scaling(const std::vector<FrameBench>& benches) {
+  if (benches.size() < 2) return;
+  const auto middle = [](const FrameBench& bench) { return median(bench.frame_s); };
+  std::printf("  scaling:");
+  for (const FrameBench& bench : benches)
+    std::printf(" %d threads %.2f x%s", bench.threads, middle(benches[0]) / middle(bench),
+                &bench == &benches.back() ? "\n" : ",");
 }
 
-Cost cost_of(const AcceleratedScene& scene, const std::vector<RayWave>& shares) {
-  return measure(shares, [&](const RayWave& rays, HitWave& hits) { scene.intersect(rays, Coherence::coherent, hits); });
+int run_bench(const BenchArguments& arguments) {
+  if (arguments.scenes.empty()) throw UsageError("expected a scene, or --ladder SCENE (see alhazen bench --help)");
+  std::vector<int> threads = arguments.threads;
+  if (threads.empty()) threads.push_back(tbb::info::default_concurrency());
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  size_t(*std::ranges::max_element(threads)));
+  if (!arguments.json.empty()) (void)PartFile(arguments.json);  // before the work is done
+  std::vector<FrameBench> all;
+  for (const std::string& scene : arguments.scenes) {
+    const std::vector<FrameBench> benches = bench_frames(scene, arguments.options, threads, arguments.repeats);
+    for (const FrameBench& bench : benches) std::printf("%s\n", bench_text(bench).c_str());
+    print_scaling(benches);
+    std::fflush(stdout);
+    all.insert(all.end(), benches.begin(), benches.end());
+  }
+  const nlohmann::ordered_json json = bench_json(all);
+  if (!arguments.json.empty()) write_json(arguments.json, json);
+  if (arguments.before.empty()) return int(ExitStatus::done);
+  const BenchComparison comparison = compare_benches(json, arguments.before);
+  std::printf("%s", comparison.text.c_str());
+  return int(comparison.regressed ? ExitStatus::regressed : ExitStatus::done);
 }
 
-void print_row(const std::string& name, const Cost& cost, const std::optional<Cost>& before) {
-  char primitives[32] = "-", boxes[32] = "-", speed_up[32] = "-";
-  if (cost.tests) {
-    std::snprintf(primitives, sizeof primitives, "%.2f", double(cost.tests->primitives) / double(cost.rays));
-    std::snprintf(boxes, sizeof boxes, "%.2f", double(cost.tests->boxes) / double(cost.rays));
-  }
-  if (before) std::snprintf(speed_up, sizeof speed_up, "%.2f x", before->seconds_per_ray() / cost.seconds_per_ray());
-  std::printf("%-17s %12.3f %14s %10s %10s\n", name.c_str(), 1e6 * cost.seconds_per_ray(), primitives, boxes, speed_up);
-  std::fflush(stdout);
-}
-
-int run_ladder(const std::string& file, int width, int height) {
-  LoadedScene loaded = load_gltf(file, print_warning);
-  Scene& scene = loaded.scene;
-  scene.images = decode_images(loaded.encoded, print_warning);
-  bake_single_instances(scene.geometry);
-  const Camera camera =
-      scene.cameras.empty() ? framing_camera(scene.geometry, double(width) / height) : scene.cameras[0];
-  std::vector<RayWave> shares;
-  for (size_t share = 0; share < kShares; ++share) {
-    RayWave rays = share_of_camera_rays(camera, width, height, share);
-    if (rays.size() > 0) shares.push_back(std::move(rays));
-  }
-
-  std::vector<Opacity> opacities;
-  const SurfaceFilter filter = surface_filter(scene, opacities);
-  std::printf("%-17s %12s %14s %10s %10s\n", "accelerator", "us/ray", "primitives/ray", "boxes/ray", "speed-up");
-  std::optional<Cost> before;
-  for (const Rung& rung : reference_ladder(scene.geometry, filter, film_projection(camera))) {
-    const Cost cost = cost_of(*rung.accelerator, shares);
-    print_row(rung.name, cost, before);
-    before = cost;
-  }
-  print_row("Embree", cost_of(AcceleratedScene(scene.geometry, filter), shares), before);
+int run(const BenchArguments& arguments) {
+  if (arguments.ladder.empty()) return run_bench(arguments);
+  const RenderOptions& size = arguments.has_size ? arguments.options : arguments.ladder_options;
+  print_ladder(arguments.ladder, size.width, size.height);
   return int(ExitStatus::done);
 }
 
 }  // namespace
 
 Command add_bench_command(CLI::App& program) {
-  struct Arguments {
-    std::string scene;
-    RenderOptions options{.width = 160, .height = 120};
-  };
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<BenchArguments>();
   CLI::App* command = program.add_subcommand("bench", "Measure what tracing a scene costs")->group("Commands");
-  command->add_option("--ladder", arguments->scene, "Camera rays of this scene by every accelerator, simplest first")
-      ->type_name("SCENE")
-      ->required();
+  command->add_option("SCENE", arguments->scenes, "glTF 2.0 files (.gltf or .glb)")->type_name("...");
   add_size_option(*command, arguments->options);
+  add_choice<Integrator>(*command, "--integrator", arguments->options.integrator,
+                         {{"whitted", Integrator::whitted}, {"signature", Integrator::signature}},
+                         "What a frame is: light, or which node, primitive and material are seen");
+  command->add_option("--spp", arguments->options.samples, "Samples per pixel")
+      ->type_name("N")
+      ->check(CLI::Range(1, 65536).description(""))
+      ->capture_default_str();
+  command->add_option("--threads", arguments->threads, "One or more numbers of threads; by default all processors")
+      ->type_name("N,N...")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 4096).description(""))
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("--repeat", arguments->repeats, "Frames that are measured")
+      ->type_name("N")
+      ->check(CLI::Range(1, 10000).description(""))
+      ->capture_default_str();
+  command->add_option("--json", arguments->json, "All samples and what they were taken on")->type_name("FILE");
+  command
+      ->add_option("--compare", arguments->before,
+                   "Says which frames are slower or faster than those of an earlier --json")
+      ->type_name("FILE");
+  command->add_option("--ladder", arguments->ladder, "Camera rays of this scene by every accelerator, simplest first")
+      ->type_name("SCENE");
   command->footer(
-      "One thread. Each row: time for a ray, primitives and boxes tried for it, how many times as fast\n"
-      "as the row before. What takes longer than 2 s sees only some rays, spread over the picture.\n"
+      "Efficiency is the time that Embree's fastest calls take for the rays of a frame, on the same\n"
+      "threads and without the renderer, over the frame's. Frames and these are measured in turn.\n"
+      "Exit status: 0 done, 6 some frame is slower than before; 2 wrong usage, 3 bad scene or file,\n"
+      "4 cannot write, 1 other.\n"
       "\n"
-      "Example:\n"
+      "Examples:\n"
+      "  alhazen bench scene.glb --threads 1,2,4 --json now.json\n"
+      "  alhazen bench scene.glb --compare before.json\n"
       "  alhazen bench --ladder scene.gltf --size 320x240");
-  return {command,
-          [arguments] { return run_ladder(arguments->scene, arguments->options.width, arguments->options.height); }};
+  return {command, [arguments, command] {
+            arguments->has_size = command->count("--size") > 0;
+            return run(*arguments);
+          }};
 }
 
 }  // namespace alhazen

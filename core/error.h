@@ -12,6 +12,7 @@ enum class ExitStatus : int {
   usage = 2,
   input = 3,
   output = 4,
+  regressed = 6,  // against earlier measurements
   interrupted = 130,
   terminated = 143
 };

@@ -60,18 +60,27 @@ struct CellWorker {
   [[nodiscard]] bool trace(const Cell& cell, WaveArena& arena) const {
     if (control.stop) return false;
     const uint64_t doubts_before = doubt_counts().quad;
+    CellWaves log;
+    arena.log = control.log ? &log : nullptr;
     bool finished = true;
     if (options.integrator == Integrator::whitted)
       finished = whitted(cell, arena);
     else
       signature(cell, arena);
     control.doubts += doubt_counts().quad - doubts_before;
+    const PhaseNanoseconds spent = arena.clock.take();
+    for (size_t k = 0; k < kPhases; ++k) control.phase_ns[k] += spent[k];
+    if (control.log && finished) control.log->add(std::move(log));
     return finished;
   }
 
   void signature(const Cell& cell, WaveArena& arena) const {
+    arena.clock.enter(Phase::generation);
     push_camera_rays(camera, options, cell, 0, arena.pending);
+    if (arena.log) arena.log->push_back(logged(WaveKind::camera, arena.pending.rays));
+    arena.clock.enter(Phase::traversal);
     accelerated.intersect(arena.pending.rays, Coherence::coherent, arena.hits);
+    arena.clock.enter(Phase::film);
     for (size_t i = 0; i < arena.pending.size(); ++i) {
       if (arena.hits.object[i] == kNone) continue;
       const HitIds hit{arena.hits.object[i], arena.hits.part[i], arena.hits.primitive[i]};
@@ -90,9 +99,11 @@ struct CellWorker {
     std::array<uint32_t, kCellSize * kCellSize> count{};
     for (int sample = 0; sample < options.samples; ++sample) {
       if (control.stop) return false;
+      arena.clock.enter(Phase::generation);
       radiance.fill(Rgb(0.0f)), background.fill(0.0f);
       push_camera_rays(camera, options, cell, uint32_t(sample), arena.pending);
       trace_whitted(scene, accelerated, options, arena, radiance.data(), background.data());
+      arena.clock.enter(Phase::film);
       for (size_t p = 0; p < radiance.size(); ++p) {
         if (!is_finite(radiance[p])) {
           ++control.dropped_samples;
@@ -162,7 +173,8 @@ RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, con
           if (!worker.trace(cell, arenas.local())) return;
           control.pixels_done += uint64_t(cell.x1 - cell.x0) * uint64_t(cell.y1 - cell.y0);
         }
-      ++control.tiles_done;
+      if (control.tiles_done++ == 0)
+        control.first_tile_ns = std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
     }));
   });
   result.complete = control.pixels_done == pixels;

@@ -1,12 +1,15 @@
 // From a scene to pixels: cells of pixels in parallel, each a sequence of waves.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 
 #include "accel/accelerated_scene.h"
 #include "core/image.h"
+#include "renderer/phase_clock.h"
 #include "renderer/scene.h"
+#include "renderer/wave_log.h"
 
 namespace alhazen {
 
@@ -29,8 +32,11 @@ struct RenderControl {
   std::atomic<uint32_t> tiles_done{0}, tiles{0};
   std::atomic<uint64_t> pixels_done{0};
   std::atomic<uint64_t> camera_rays{0}, shadow_rays{0}, mirror_rays{0}, refracted_rays{0};
-  std::atomic<uint64_t> dropped_samples{0};  // not finite
-  std::atomic<uint64_t> doubts{0};           // crossings that doubles alone did not settle
+  std::atomic<uint64_t> dropped_samples{0};               // not finite
+  std::atomic<uint64_t> doubts{0};                        // crossings that doubles alone did not settle
+  std::array<std::atomic<uint64_t>, kPhases> phase_ns{};  // by Phase, of all threads
+  std::atomic<int64_t> first_tile_ns{0};  // when the first tile was finished, by the steady clock; 0: none is yet
+  WaveLog* log = nullptr;                 // gets the waves of every cell, if there is one; they take much memory
 };
 
 /// Stopped early, every pixel is what the complete picture has there, or empty: 0 with alpha 0, or no node.

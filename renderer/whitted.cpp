@@ -50,7 +50,10 @@ class Whitted {
     while (arena_.pending.size() > 0) {
       take_wave();
       for (size_t i = 0; i < arena_.current.size(); ++i) ++arena_.rays_by_kind[size_t(arena_.current.paths[i].kind)];
+      log(first ? WaveKind::camera : WaveKind::bounced, arena_.current.rays);
+      arena_.clock.enter(Phase::traversal);
       accelerated_.intersect(arena_.current.rays, first ? Coherence::coherent : Coherence::incoherent, arena_.hits);
+      arena_.clock.enter(Phase::shading);
       for (size_t i = 0; i < arena_.current.size(); ++i) shade(i);
       trace_shadows(first ? Coherence::coherent : Coherence::incoherent);
       first = false;
@@ -58,6 +61,10 @@ class Whitted {
   }
 
  private:
+  void log(WaveKind kind, const RayWave& rays) {
+    if (arena_.log && rays.size() > 0) arena_.log->push_back(logged(kind, rays));
+  }
+
   /// Moves the last rays of `pending` to `current`.
   void take_wave() {
     PathWave &from = arena_.pending, &to = arena_.current;
@@ -334,7 +341,10 @@ class Whitted {
   void trace_shadows(Coherence coherence) {
     if (arena_.shadow.size() == 0) return;
     arena_.shadow_rays += arena_.shadow.size();
+    log(coherence == Coherence::coherent ? WaveKind::camera_shadow : WaveKind::bounced_shadow, arena_.shadow);
+    arena_.clock.enter(Phase::traversal);
     accelerated_.transmittance(arena_.shadow, coherence, arena_.visible);
+    arena_.clock.enter(Phase::shading);
     for (size_t i = 0; i < arena_.shadow.size(); ++i)
       radiance_[arena_.shadow_pixel[i]] += arena_.shadow_light[i] * arena_.visible[i];
     arena_.shadow.resize(0), arena_.shadow_pixel.resize(0), arena_.shadow_light.resize(0);

@@ -5,8 +5,10 @@
 
 #include "renderer/camera_ray.h"
 #include "renderer/media.h"
+#include "renderer/phase_clock.h"
 #include "renderer/render.h"
 #include "renderer/surface.h"
+#include "renderer/wave_log.h"
 
 namespace alhazen {
 
@@ -47,6 +49,8 @@ struct WaveArena {
   Lanes<Rgb> shadow_light, visible;
   std::array<uint64_t, 4> rays_by_kind{};  // by RayKind
   uint64_t shadow_rays = 0;
+  PhaseClock clock;
+  CellWaves* log = nullptr;  // where waves are copied to, if at all
 };
 
 /// Follows the rays in `arena.pending` to their ends and adds their light to `radiance`, one value for each pixel of

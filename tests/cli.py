@@ -120,6 +120,36 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(names, ["every primitive", "object boxes", "node tree", "image rectangles", "Embree"])
         self.assertEqual(run("bench").returncode, 2)
 
+    def test_bench_sets_a_frame_beside_what_embree_takes(self):
+        result = run("bench", SCENE, "--size", "64x48", "--threads", "1,2", "--repeat", "6", "--json", self.file("a.json"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stdout, r"Embree alone [\d.]+ s, efficiency [\d.]+ ")
+        self.assertRegex(result.stdout, r"scaling: 1 threads 1.00 x, 2 threads [\d.]+ x")
+        with open(self.file("a.json"), encoding="utf-8") as file:
+            report = json.load(file)
+        self.assertEqual([r["threads"] for r in report["results"]], [1, 2])
+        for r in report["results"]:
+            self.assertEqual(r["rays"]["camera"], 64 * 48)
+            self.assertEqual(sum(kind["rays"] for kind in r["bare"].values()), sum(r["rays"].values()))
+            self.assertEqual([len(r[k]) for k in ("frame_s", "traversal_s", "single_ray_traversal_s")], [6, 6, 6])
+            self.assertLess(0, r["efficiency"])
+
+    def test_bench_tells_what_became_slower(self):
+        bench = ["bench", SCENE, "--size", "32x24", "--threads", "1", "--repeat", "6"]
+        self.assertEqual(run(*bench, "--json", self.file("now.json")).returncode, 0)
+        with open(self.file("now.json"), encoding="utf-8") as file:
+            report = json.load(file)
+        for factor, status, word in ((0.01, 6, "SLOWER"), (100, 0, "faster")):
+            for r in report["results"]:
+                r["frame_s"] = [1e-3 * factor * (1 + 0.01 * k) for k in range(6)]
+            with open(self.file("before.json"), "w", encoding="utf-8") as file:
+                json.dump(report, file)
+            result = run(*bench, "--compare", self.file("before.json"))
+            self.assertEqual(result.returncode, status, result.stdout + result.stderr)
+            self.assertIn(word, result.stdout)
+        self.assertEqual(run(*bench, "--compare", SCENE).returncode, 3)
+        self.assertEqual(run(*bench, "--json", self.file("x/a.json")).returncode, 4)
+
     def test_a_sheet_shows_every_model_and_why_one_is_missing(self):
         os.mkdir(self.file("models"))
         os.symlink(os.path.dirname(SCENE), self.file("models/linked"))  # is not followed
