@@ -32,13 +32,21 @@ namespace alhazen {
   return reverse_bits(x);
 }
 
+/// The bits times Pascal's triangle modulo 2: bit j is the sum of the bits k with C(k, j) odd, which are those whose
+/// number has every 1 of j (Lucas' theorem).
+[[nodiscard]] constexpr uint32_t pascal_product(uint32_t x) noexcept {
+  x ^= (x & 0xaaaaaaaau) >> 1;
+  x ^= (x & 0xccccccccu) >> 2;
+  x ^= (x & 0xf0f0f0f0u) >> 4;
+  x ^= (x & 0xff00ff00u) >> 8;
+  return x ^ x >> 16;
+}
+
 /// Point `index` of the scrambled (0, 2)-sequence of `seed`, in [0, 1)²: any first 2^k points are stratified in every
 /// elementary interval. The first two Sobol' dimensions.
 [[nodiscard]] constexpr Vec2f sobol_owen(uint32_t index, uint32_t seed) noexcept {
   const uint32_t i = owen_scramble(index, mix_bits(seed));
-  uint32_t y = 0;
-  for (uint32_t bits = i, v = 1u << 31; bits; bits >>= 1, v ^= v >> 1)
-    if (bits & 1) y ^= v;
+  const uint32_t y = reverse_bits(pascal_product(i));
   const auto unit = [](uint32_t bits) { return float(bits >> 8) * 0x1p-24f; };
   return {unit(owen_scramble(reverse_bits(i), mix_bits(seed + 1))), unit(owen_scramble(y, mix_bits(seed + 2)))};
 }

@@ -20,10 +20,4 @@ bool refract(const Vec3f& d, const Vec3f& n, float eta, Vec3f& refracted) noexce
   return true;
 }
 
-Rgb fresnel_schlick(const Rgb& f0, float f90, float cos_theta) noexcept {
-  const float m = 1 - std::clamp(cos_theta, 0.0f, 1.0f);
-  const float m2 = m * m;
-  return lerp(f0, Rgb{f90}, m2 * m2 * m);
-}
-
 }  // namespace alhazen

@@ -39,16 +39,17 @@ TexelPair neighbours(double u, Wrap wrap, int size, bool nearest) {
   return {std::max(a, 0), std::min(b, size - 1), t};
 }
 
-std::array<float, 256> decode_table() {
+template <class Decode>
+std::array<float, 256> table_of(const Decode& decode) {
   std::array<float, 256> table{};
-  for (int i = 0; i < 256; ++i) table[size_t(i)] = linear_from_srgb(float(i) / 255);
+  for (int i = 0; i < 256; ++i) table[size_t(i)] = decode(float(i) / 255);
   return table;
 }
 
-float decode(uint8_t v, ColorSpace space) {
-  static const std::array<float, 256> srgb = decode_table();
-  return space == ColorSpace::srgb ? srgb[v] : float(v) / 255;
-}
+const std::array<std::array<float, 256>, 2> kBytes = {table_of([](float x) { return x; }),  // by ColorSpace
+                                                      table_of(linear_from_srgb)};
+
+float decode(uint8_t v, ColorSpace space) { return kBytes[size_t(space)][v]; }
 float decode(uint16_t v, ColorSpace space) {
   const float x = float(v) / 65535;
   return space == ColorSpace::srgb ? linear_from_srgb(x) : x;
@@ -99,9 +100,10 @@ float level_of(const TextureImage& image, const TextureUse& use, const SurfaceIn
 
 }  // namespace
 
-Rgba sample(const TextureTable& table, const TextureUse& use, ColorSpace space, const SurfaceInputs& inputs) noexcept {
+Rgba sample_used(const TextureTable& table, const TextureUse& use, ColorSpace space,
+                 const SurfaceInputs& inputs) noexcept {
   const Rgba white{Rgb{1.0f}, 1.0f};
-  if (!use || !table.textures || !table.images || use.texture >= table.textures->size()) return white;
+  if (!table.textures || !table.images || use.texture >= table.textures->size()) return white;
   const Texture& texture = (*table.textures)[use.texture];
   if (texture.image >= table.images->size()) return white;
   const TextureImage& image = (*table.images)[texture.image];

@@ -67,8 +67,14 @@ struct TextureTable {
 /// Texel centres lie at half integers; wrapping is exact for any finite uv (non-finite reads as (0, 0)). With `srgb`
 /// the colour channels are decoded (IEC 61966-2-1) texel by texel before they are filtered; alpha never is. Grey fills
 /// r, g, b; a missing alpha is 1.
-[[nodiscard]] Rgba sample(const TextureTable& table, const TextureUse& use, ColorSpace space,
-                          const SurfaceInputs& inputs) noexcept;
+[[nodiscard]] Rgba sample_used(const TextureTable& table, const TextureUse& use, ColorSpace space,
+                               const SurfaceInputs& inputs) noexcept;
+
+/// The same; most materials use few of the textures that they might.
+[[nodiscard]] inline Rgba sample(const TextureTable& table, const TextureUse& use, ColorSpace space,
+                                 const SurfaceInputs& inputs) noexcept {
+  return use ? sample_used(table, use, space, inputs) : Rgba{Rgb{1.0f}, 1.0f};
+}
 
 /// IEC 61966-2-1 and back, for one channel. Exact at 0 and 1.
 [[nodiscard]] float linear_from_srgb(float encoded) noexcept;

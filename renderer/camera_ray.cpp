@@ -4,14 +4,10 @@
 
 namespace alhazen {
 
-Rayf camera_ray(const Camera& camera, int width, int height, double x, double y) {
-  const double half = camera.kind == Camera::Kind::perspective ? std::tan(camera.yfov / 2) : camera.ymag;
-  const double step = 2 * half / height;
-  const Vec3d film{(x - 0.5 * width) * step, (0.5 * height - y) * step, 0};
-  const Affine3d& m = camera.world_from_camera;
-  if (camera.kind == Camera::Kind::perspective)
-    return {Vec3f(m.origin), Vec3f(normalize(transform_vector(m, film - Vec3d{0, 0, 1})))};
-  return {Vec3f(transform_point(m, film)), Vec3f(-m.z)};
+Film::Film(const Camera& camera, int width, int height)
+    : perspective(camera.kind == Camera::Kind::perspective), world_from_camera(camera.world_from_camera) {
+  const double half = perspective ? std::tan(camera.yfov / 2) : camera.ymag;
+  step = 2 * half / height, center_x = 0.5 * width, center_y = 0.5 * height;
 }
 
 Cone camera_cone(const Camera& camera, int height, int samples) {

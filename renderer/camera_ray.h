@@ -7,9 +7,27 @@
 
 namespace alhazen {
 
-/// The ray through a film point (x, y), in pixels from the top left of a picture of width x height, in world space. Its
-/// direction has unit length.
-[[nodiscard]] Rayf camera_ray(const Camera& camera, int width, int height, double x, double y);
+/// A camera before a picture of width x height pixels.
+struct Film {
+  Film(const Camera& camera, int width, int height);
+
+  bool perspective;
+  Affine3d world_from_camera;
+  double step, center_x, center_y;  // a pixel's side at distance 1 (orthographic: in metres); the middle, in pixels
+};
+
+/// The ray through a film point (x, y), in pixels from the top left, in world space. Its direction has unit length.
+[[nodiscard]] inline Rayf camera_ray(const Film& film, double x, double y) {
+  const Affine3d& m = film.world_from_camera;
+  const Vec3d p{(x - film.center_x) * film.step, (film.center_y - y) * film.step, 0};
+  if (film.perspective) return {Vec3f(m.origin), Vec3f(normalize(transform_vector(m, p - Vec3d{0, 0, 1})))};
+  return {Vec3f(transform_point(m, p)), Vec3f(-m.z)};
+}
+
+/// The same, of a single ray.
+[[nodiscard]] inline Rayf camera_ray(const Camera& camera, int width, int height, double x, double y) {
+  return camera_ray(Film(camera, width, height), x, y);
+}
 
 /// The cone that a ray stands for: metres across where it starts, and how much wider it gets with each (Akenine-Moller
 /// et al., "Texture Level of Detail Strategies for Real-Time Ray Tracing", Ray Tracing Gems, chapter 20).

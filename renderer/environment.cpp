@@ -21,8 +21,13 @@ Rgb pixel(const ColorImage& image, int x, int y) {
   return {p[0], p[1], p[2]};
 }
 
-Rgb bilinear(const ColorImage& image, const Vec3f& d) {
-  const float u = 0.5f + std::atan2(d.x, -d.z) / (2 * kPi), v = std::acos(std::clamp(d.y, -1.0f, 1.0f)) / kPi;
+/// Where a unit direction lies in an equirectangular image, from 0 to 1 each way.
+Vec2f place_of(const Vec3f& d) {
+  return {0.5f + std::atan2(d.x, -d.z) / (2 * kPi), std::acos(std::clamp(d.y, -1.0f, 1.0f)) / kPi};
+}
+
+Rgb bilinear(const ColorImage& image, const Vec2f& place) {
+  const auto [u, v] = place;
   const float x = u * float(image.width) - 0.5f, y = v * float(image.height) - 0.5f;
   const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
   const auto column = [&](int k) { return ((k % image.width) + image.width) % image.width; };
@@ -110,7 +115,8 @@ Rgb gathered(const std::vector<ColorImage>& levels, const std::vector<LobeSample
   Rgb sum;
   for (const LobeSample& sample : lobe) {
     const Vec3f& d = sample.direction;
-    sum += bilinear(levels[size_t(sample.level)], frame.t * d.x + frame.b * d.y + frame.n * d.z) * sample.weight;
+    sum +=
+        bilinear(levels[size_t(sample.level)], place_of(frame.t * d.x + frame.b * d.y + frame.n * d.z)) * sample.weight;
   }
   return sum;
 }
@@ -188,13 +194,13 @@ Environment make_environment(ColorImage image) {
 }
 
 Rgb environment_radiance(const Environment& environment, const Vec3f& direction_world, float roughness) noexcept {
-  const Vec3f d = transform_vector(environment.environment_from_world, direction_world);
+  const Vec2f place = place_of(transform_vector(environment.environment_from_world, direction_world));
   const float x = std::clamp(roughness, 0.0f, 1.0f) * float(environment.levels.size() - 1);
   const size_t k = std::min(size_t(x), environment.levels.size() - 1);
-  const Rgb sharp = bilinear(environment.levels[k], d);
+  const Rgb sharp = bilinear(environment.levels[k], place);
   const float t = x - float(k);
   if (!(t > 0)) return sharp * environment.strength;
-  return lerp(sharp, bilinear(environment.levels[k + 1], d), t) * environment.strength;
+  return lerp(sharp, bilinear(environment.levels[k + 1], place), t) * environment.strength;
 }
 
 Rgb environment_diffuse(const Environment& environment, const Vec3f& n_world) noexcept {

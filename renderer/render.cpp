@@ -36,6 +36,7 @@ Rgb light_passing(const void* data, const Crossing& crossing) noexcept {
 void push_camera_rays(const Camera& camera, const RenderOptions& options, const Cell& cell, uint32_t sample,
                       PathWave& wave) {
   wave.resize(0);
+  const Film film(camera, options.width, options.height);
   const Cone cone = camera_cone(camera, options.height, options.samples);
   for_each_pixel(cell, [&](int x, int y) {
     double fx = x + 0.5, fy = y + 0.5;
@@ -44,7 +45,7 @@ void push_camera_rays(const Camera& camera, const RenderOptions& options, const 
       fx += double(sample_tent(u.x)), fy += double(sample_tent(u.y));
     }
     const uint32_t pixel = uint32_t((y - cell.y0) * kCellSize + (x - cell.x0));
-    wave.push(camera_ray(camera, options.width, options.height, fx, fy), {.pixel = pixel, .cone = cone});
+    wave.push(camera_ray(film, fx, fy), {.pixel = pixel, .cone = cone});
   });
 }
 

@@ -53,14 +53,18 @@ SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v)
   s.material = part.material;
   interpolate_attributes(part, corner, u, v, s);
 
-  const Vec3d p0 = transform_point(m, Vec3d(part.positions[corner[0]]));
-  const Vec3d p1 = transform_point(m, Vec3d(part.positions[corner[1]]));
-  const Vec3d p2 = transform_point(m, Vec3d(part.positions[corner[2]]));
+  const bool baked = m == Affine3d{};
+  const auto vertex = [&](size_t k) {
+    const Vec3d p_object(part.positions[corner[k]]);
+    return baked ? p_object : transform_point(m, p_object);
+  };
+  const Vec3d p0 = vertex(0), p1 = vertex(1), p2 = vertex(2);
   s.p_world = p0 * (1.0 - u - v) + p1 * double(u) + p2 * double(v);
   const Vec3d twice_area = cross(p1 - p0, p2 - p0);
   measure_uvs(part, corner, length(twice_area), s);
   Vec3d ng = normalize(twice_area);
-  if (determinant(m) < 0) ng = -ng;
+  const double stretch = baked ? 1 : determinant(m);
+  if (stretch < 0) ng = -ng;
   s.ng_world = s.ns_world = Vec3f(ng);
   if (part.normals.empty() && !part.polygon_normals.empty()) {
     const Vec3f& n = part.polygon_normals[polygon_of(part, ids.primitive)];
@@ -68,21 +72,20 @@ SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v)
     if (dot(n_world, n_world) > 0) s.ns_world = Vec3f(n_world);
   }
   // Rounding of the position, of an instance's ray transform, and of the traversal's plane.
-  const bool baked = m == Affine3d{};
   s.offset = float(kUlp * (baked ? 4 : 16) * (max_component(abs(s.p_world)) + max_component(abs(m.origin))) +
-                   plane_error(part, corner) * std::abs(determinant(m)) / length(twice_area));
+                   plane_error(part, corner) * std::abs(stretch) / length(twice_area));
 
   const float w = 1 - u - v;
   if (!part.normals.empty()) {
     const Vec3f n = part.normals[corner[0]] * w + part.normals[corner[1]] * u + part.normals[corner[2]] * v;
-    const Vec3d n_world = normalize(transform_normal(m, Vec3d(n)));
+    const Vec3d n_world = normalize(baked ? Vec3d(n) : transform_normal(m, Vec3d(n)));
     if (is_finite(n_world) && dot(n_world, n_world) > 0) s.ns_world = Vec3f(n_world);
   }
   if (!part.tangents.empty()) {
     const Vec4f &a = part.tangents[corner[0]], &b = part.tangents[corner[1]], &c = part.tangents[corner[2]];
     const Vec3f t{w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y, w * a.z + u * b.z + v * c.z};
-    s.tangent_world = Vec3f(normalize(transform_vector(m, Vec3d(t))));
-    s.bitangent_sign = determinant(m) < 0 ? -a.w : a.w;
+    s.tangent_world = Vec3f(normalize(baked ? Vec3d(t) : transform_vector(m, Vec3d(t))));
+    s.bitangent_sign = stretch < 0 ? -a.w : a.w;
   }
   return s;
 }

@@ -278,6 +278,7 @@ class Whitted {
 
   void spawn(const Shading& s, const Vec3f& direction, const Rgb& weight, RayKind kind, const Media& media,
              float roughness = 0) {
+    if (!(max_component(weight) > 0)) return;
     const float blur = std::min(1.0f, std::hypot(s.path.roughness, roughness));
     spawn_as(s, direction, {s.path.pixel, weight, uint16_t(s.path.depth + 1), kind, media, s.cone, blur});
   }
