@@ -11,6 +11,7 @@
 #include "apps/help_formatter.h"
 #include "apps/info_command.h"
 #include "apps/interruption.h"
+#include "apps/make_command.h"
 #include "apps/render_command.h"
 #include "apps/sheet_command.h"
 #include "apps/usage.h"
@@ -21,7 +22,8 @@ namespace alhazen {
 namespace {
 
 constexpr Command (*kCommands[])(CLI::App& program) = {
-    add_render_command, add_info_command, add_sheet_command, add_bench_command, add_crosscheck_command,
+    add_render_command,     add_info_command, add_sheet_command,   add_bench_command,
+    add_crosscheck_command, add_make_command, add_convert_command,
 };
 
 std::string version() {

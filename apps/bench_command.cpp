@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,12 @@
 #include "apps/bench_report.h"
 #include "apps/render_arguments.h"
 #include "apps/sample_statistics.h"
+#include "apps/scratch_folder.h"
 #include "apps/usage.h"
 #include "core/error.h"
 #include "loaders/part_file.h"
+#include "procedural/databases.h"
+#include "procedural/nff_to_gltf.h"
 
 namespace alhazen {
 namespace {
@@ -46,15 +50,30 @@ void print_scaling(const std::vector<FrameBench>& benches) {
                 &bench == &benches.back() ? "\n" : ",");
 }
 
+/// The well-known scenes, at their usual sizes.
+std::vector<std::string> make_suite(const ScratchFolder& folder) {
+  std::vector<std::string> files;
+  for (const Database& database : databases()) {
+    files.push_back((folder.path() / (database.name + ".glb")).string());
+    const std::vector<uint8_t> glb = glb_of(database.make(database.default_size), {});
+    PartFile part(files.back());
+    part.write(glb);
+    part.commit();
+  }
+  return files;
+}
+
 int run_bench(const BenchArguments& arguments) {
-  if (arguments.scenes.empty()) throw UsageError("expected a scene, or --ladder SCENE (see alhazen bench --help)");
+  std::optional<ScratchFolder> folder;
+  std::vector<std::string> scenes = arguments.scenes;
+  if (scenes.empty()) scenes = make_suite(folder.emplace());
   std::vector<int> threads = arguments.threads;
   if (threads.empty()) threads.push_back(tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   size_t(*std::ranges::max_element(threads)));
   if (!arguments.json.empty()) (void)PartFile(arguments.json);  // before the work is done
   std::vector<FrameBench> all;
-  for (const std::string& scene : arguments.scenes) {
+  for (const std::string& scene : scenes) {
     const std::vector<FrameBench> benches = bench_frames(scene, arguments.options, threads, arguments.repeats);
     for (const FrameBench& bench : benches) std::printf("%s\n", bench_text(bench).c_str());
     print_scaling(benches);
@@ -81,7 +100,7 @@ int run(const BenchArguments& arguments) {
 Command add_bench_command(CLI::App& program) {
   const auto arguments = std::make_shared<BenchArguments>();
   CLI::App* command = program.add_subcommand("bench", "Measure what tracing a scene costs")->group("Commands");
-  command->add_option("SCENE", arguments->scenes, "glTF 2.0 files (.gltf or .glb)")->type_name("...");
+  command->add_option("SCENE", arguments->scenes, "glTF 2.0 files (.gltf or .glb); by default the scenes of `alhazen make`")->type_name("...");
   add_size_option(*command, arguments->options);
   add_choice<Integrator>(*command, "--integrator", arguments->options.integrator,
                          {{"whitted", Integrator::whitted}, {"signature", Integrator::signature}},

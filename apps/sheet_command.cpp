@@ -1,7 +1,5 @@
 #include "apps/sheet_command.h"
 
-#include <stdlib.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -11,6 +9,7 @@
 #include "apps/contact_sheet.h"
 #include "apps/interruption.h"
 #include "apps/render_arguments.h"
+#include "apps/scratch_folder.h"
 #include "core/error.h"
 #include "loaders/image_file.h"
 #include "loaders/read_picture.h"
@@ -27,27 +26,6 @@ struct SheetArguments {
   RenderOptions cell{.width = 320, .height = 240};
   int columns = 0;
   double limit_s = 60;
-};
-
-/// A folder under the system's temporary one, gone with its owner.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (fs::temp_directory_path() / "alhazen-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw WriteError(name, std::generic_category().message(errno));
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
 };
 
 bool is_model(const fs::path& file) {
