@@ -30,7 +30,7 @@ Rgb bilinear(const ColorImage& image, const Vec2f& place) {
   const auto [u, v] = place;
   const float x = u * float(image.width) - 0.5f, y = v * float(image.height) - 0.5f;
   const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
-  const auto column = [&](int k) { return ((k % image.width) + image.width) % image.width; };
+  const auto column = [&](int k) { return k < 0 ? image.width - 1 : k >= image.width ? 0 : k; };  // one beyond at most
   const auto row = [&](int k) { return std::clamp(k, 0, image.height - 1); };
   const float s = x - float(x0), t = y - float(y0);
   return lerp(lerp(pixel(image, column(x0), row(y0)), pixel(image, column(x0 + 1), row(y0)), s),

@@ -35,7 +35,8 @@ Rgb light_passing(const void* data, const Crossing& crossing) noexcept {
 /// The camera rays of one sample of every pixel.
 void push_camera_rays(const Camera& camera, const RenderOptions& options, const Cell& cell, uint32_t sample,
                       PathWave& wave) {
-  wave.resize(0);
+  wave.resize(size_t(cell.x1 - cell.x0) * size_t(cell.y1 - cell.y0));
+  size_t i = 0;
   const Film film(camera, options.width, options.height);
   const Cone cone = camera_cone(camera, options.height, options.samples);
   for_each_pixel(cell, [&](int x, int y) {
@@ -45,7 +46,8 @@ void push_camera_rays(const Camera& camera, const RenderOptions& options, const 
       fx += double(sample_tent(u.x)), fy += double(sample_tent(u.y));
     }
     const uint32_t pixel = uint32_t((y - cell.y0) * kCellSize + (x - cell.x0));
-    wave.push(camera_ray(film, fx, fy), {.pixel = pixel, .cone = cone});
+    wave.rays.set(i, camera_ray(film, fx, fy)), wave.paths[i] = {.pixel = pixel, .cone = cone};
+    ++i;
   });
 }
 

@@ -1,6 +1,7 @@
 #include "renderer/surface.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -8,6 +9,13 @@ namespace alhazen {
 namespace {
 
 constexpr double kUlp = 0x1p-24;  // half the spacing of floats, relative
+
+/// The next larger float; of the largest, infinity. Finite numbers and -infinity only.
+float next_up(float x) {
+  const auto bits = std::bit_cast<uint32_t>(x);
+  if (x == 0) return std::numeric_limits<float>::denorm_min();
+  return std::bit_cast<float>(x > 0 ? bits + 1 : bits - 1);
+}
 
 void interpolate_attributes(const TriangleMesh& part, const std::array<uint32_t, 3>& corner, float u, float v,
                             SurfacePoint& s) {
@@ -148,8 +156,7 @@ Vec3f spawn_origin(const SurfacePoint& point, const Vec3f& direction) noexcept {
   const Vec3d n = Vec3d(point.ng_world) * (dot(point.ng_world, direction) < 0 ? -1.0 : 1.0);
   const Vec3d p = point.p_world + n * double(point.offset);
   const auto away = [](double x, double toward) {
-    const float inf = std::numeric_limits<float>::infinity();
-    return toward > 0 ? std::nextafter(float(x), inf) : toward < 0 ? std::nextafter(float(x), -inf) : float(x);
+    return toward > 0 ? next_up(float(x)) : toward < 0 ? -next_up(-float(x)) : float(x);
   };
   return {away(p.x, n.x), away(p.y, n.y), away(p.z, n.z)};
 }
