@@ -4,6 +4,7 @@
 
 #include "accel/shapes/polygon.h"
 #include "decide.h"
+#include "tests/trials.h"
 
 namespace alhazen {
 namespace {
@@ -132,7 +133,7 @@ Vec3d random_target(Rng& rng, const Loops& loops) {
 TEST(Polygon, IsDecidedAsRationalsDecideByEveryNumberTypeThatIsSure) {
   Rng rng(21);
   DecisionCount count;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < trials(500); ++i) {
     Vec3d middle;
     const Loops loops = random_valid_loops(rng, i % kPolygonKinds, middle);
     const Polygon polygon = make_polygon(loops);
@@ -148,7 +149,7 @@ TEST(Polygon, IsDecidedAsRationalsDecideByEveryNumberTypeThatIsSure) {
 
 TEST(Polygon, IsWhatItsDefinitionSays) {
   Rng rng(22);
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < trials(400); ++i) {
     Vec3d middle;
     const Loops loops = random_valid_loops(rng, i % kPolygonKinds, middle);
     const Polygon polygon = make_polygon(loops);
@@ -207,7 +208,7 @@ TEST(Polygon, KeepsItsErrorBoundsOnLinesThatAreRoundedThemselves) {
 TEST(Polygon, BoundsContainEveryHit) {
   Rng rng(25);
   int hits = 0;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < trials(500); ++i) {
     Vec3d middle;
     Loops loops = random_valid_loops(rng, i % kPolygonKinds, middle);
     if (i % 2)  // off the plane, within what is allowed
@@ -225,7 +226,7 @@ TEST(Polygon, BoundsContainEveryHit) {
         }
     }
   }
-  EXPECT_GT(hits, 5000);
+  EXPECT_GT(hits, trials(5000));
 }
 
 // ---- who owns an edge
@@ -438,11 +439,11 @@ Loop regular(int n) {
 
 TEST(Polygon, HasFromThreeToAHundredThousandVertices) {
   Rng rng(27);
-  for (const int n : {3, 4, 5, 64, 65, 1000, 100000}) {
+  for (const int n : {3, 4, 5, 64, 65, 1000, trials(100000)}) {
     const Loops loops{regular(n)};
     const Polygon polygon = make_polygon(loops);
     EXPECT_LE(polygon.edges.size(), 3u * size_t(n));
-    for (int i = 0; i < (n > 1000 ? 1 : 50); ++i) {
+    for (int i = 0; i < (n > 1000 ? 1 : trials(50)); ++i) {
       const FloatLine line = aimed(rng, random_target(rng, loops), {0.25, 0.5, 1}, 1);
       EXPECT_EQ(is_hit(polygon, line), oracle(loops, exact_line(line.origin, line.direction)).has_value());
     }

@@ -13,6 +13,7 @@
 #include "renderer/camera_ray.h"
 #include "renderer/render.h"
 #include "renderer/surface.h"
+#include "tests/trials.h"
 
 namespace alhazen {
 namespace {
@@ -174,7 +175,7 @@ void expect_the_same_from_all(const Scene& scene, const Camera& camera, const Ra
 }
 
 TEST(ReferenceAccelerators, AndEmbreeGiveOneSignatureOfRandomScenes) {
-  for (uint32_t seed = 0; seed < 6; ++seed) {
+  for (uint32_t seed = 0; seed < uint32_t(trials(6)); ++seed) {
     const Scene scene = random_scene(seed);
     for (const Camera& camera : {perspective_camera(), orthographic_camera(), camera_inside()})
       expect_the_same_from_all(scene, camera, camera_rays(camera, 80, 60));

@@ -4,6 +4,7 @@
 
 #include "accel/accelerated_scene.h"
 #include "decide.h"
+#include "tests/trials.h"
 
 namespace alhazen {
 namespace {
@@ -69,7 +70,7 @@ TEST(Watertight, NoRayLeavesAClosedMeshHoweverItIsPlacedAndTraced) {
     for (const auto& places : placings) {
       const Geometry geometry = placed(mesh, places);
       const AcceleratedScene scene(geometry, {}, kWatertight);
-      const RayWave rays = rays_from_within(rng, mesh, places.back(), 4000);
+      const RayWave rays = rays_from_within(rng, mesh, places.back(), size_t(trials(4000)));
       for (const Coherence coherence : {Coherence::coherent, Coherence::incoherent}) {
         const HitWave hits = hits_of(scene, rays, coherence);
         Lanes<Rgb> visible;
