@@ -6,9 +6,9 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 
+#include "apps/crosscheck_cases.h"
 #include "apps/crosscheck_map.h"
 #include "apps/crosscheck_target.h"
 #include "apps/interruption.h"
@@ -16,7 +16,9 @@
 #include "core/error.h"
 #include "crosscheck/extra_report.h"
 #include "crosscheck/report.h"
+#include "crosscheck/shortest_cases.h"
 #include "loaders/image_file.h"
+#include "loaders/part_file.h"
 
 namespace alhazen {
 namespace {
@@ -27,25 +29,24 @@ std::atomic<bool> g_stop{false};
 constexpr double kLargestCount = 1e15;      // of rays: far more than can be judged, and exact as a double
 constexpr uint64_t kLargestRecords = 1000;  // of each family and population
 
-/// Disagreements as lines of a file.
+/// Disagreements as lines of a file, which is complete or not there at all.
 class RecordFile {
  public:
-  explicit RecordFile(const std::string& file) : name_(file) {
-    if (file.empty()) return;
-    out_.open(file);
-    if (!out_) throw WriteError(file, "cannot be written");
+  explicit RecordFile(const std::string& file) {
+    if (!file.empty()) part_ = std::make_unique<PartFile>(file);
   }
-  [[nodiscard]] bool is_wanted() const { return !name_.empty(); }
-  void add(const std::string& line) {
-    if (!(out_ << line << '\n')) throw WriteError(name_, "cannot be written");
+  [[nodiscard]] bool is_wanted() const { return part_ != nullptr; }
+  void add(std::string line) {
+    line += '\n';
+    part_->write({reinterpret_cast<const uint8_t*>(line.data()), line.size()});
   }
   void close() {
-    if (!name_.empty() && !out_.flush()) throw WriteError(name_, "cannot be written");
+    if (part_) part_->commit();
+    part_.reset();
   }
 
  private:
-  std::string name_;
-  std::ofstream out_;
+  std::unique_ptr<PartFile> part_;
 };
 
 bool is_disagreement(const Case& c) { return c.verdict != Verdict::agree || (c.b_fault && *c.b_fault != Fault::none); }
@@ -56,9 +57,11 @@ struct Session {
   const CrosscheckTarget& target;
   RecordFile records;
   Faults faults;
+  ShortestCases shortest;
   RelationReport relations;
   std::optional<CrosscheckMap> map;
   Tally total;
+  std::string textbook = {};  // rows
 
   [[nodiscard]] std::string source(Population population) const {
     return target.source + (population == Population::camera ? target.view_options : "");
@@ -69,7 +72,9 @@ struct Session {
     if (map) map->add(family, c);
     if (options.only) std::printf("%s\n", record(family, c, options, source(c.population)).c_str());
     if (!is_disagreement(c)) return;
-    faults.add(family, c, reproduction(family, c.population, c.index, options.seed, source(c.population)));
+    const std::string command = reproduction(family, c.population, c.index, options.seed, source(c.population));
+    faults.add(family, c, command);
+    shortest.add(family, c, command);
     if (records.is_wanted() && (is_failure(c.verdict) || recorded++ < kLargestRecords))
       records.add(record(family, c, options, source(c.population)));
   }
@@ -86,6 +91,7 @@ struct Session {
     std::printf("%s", table_row(family, name_of(population), tally).c_str());
     std::fflush(stdout);
     total.add(tally);
+    textbook += textbook_row(family, name_of(population), tally.textbook);
     relations.add(tally.relations, [&](uint64_t index) {
       return reproduction(family, population, index, arguments.options.seed, source(population));
     });
@@ -99,9 +105,8 @@ void check_picture(Session& session, PictureTally& picture) {
   });
 }
 
-/// Of the picture where there is one, else of the families. Throws WriteError for a file that cannot be written.
-CrosscheckMap new_map(const std::string& file, const CrosscheckTarget& target) {
-  check_writable(file, 1, 1);
+/// Of the picture where there is one, else of the families.
+CrosscheckMap new_map(const CrosscheckTarget& target) {
   const bool picture = target.picture != nullptr;
   return {picture ? target.view.width : 0, picture ? target.view.height : 0, target.families.size()};
 }
@@ -139,10 +144,13 @@ int run_crosscheck(CrosscheckArguments& arguments) {
   const int threads = arguments.threads > 0 ? arguments.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
   const CrosscheckTarget target = crosscheck_target(arguments);
-  Session session{arguments, target, RecordFile(arguments.json), {}, {}, {}, {}};
   if (target.plugin) options.intersector = &target.plugin->intersector();
+  if (!arguments.cases.empty()) return judge_cases(arguments.cases, options) > 0 ? kIntersectorWrong : 0;
+  if (!arguments.map.empty()) check_writable(arguments.map, 1, 1);  // before the records' file, one part at a time
+  Session session{arguments, target, RecordFile(arguments.json), {}, ShortestCases(options, arguments.shrink), {},
+                  {},        {}};
   options.rays = uint64_t(std::ceil(arguments.rays / double(std::max<size_t>(1, target.families.size()))));
-  if (!arguments.map.empty()) session.map = new_map(arguments.map, target);
+  if (!arguments.map.empty()) session.map = new_map(target);
   stop_on_signal(g_stop);
 
   const bool has_table = !target.families.empty() || target.picture;
@@ -154,11 +162,13 @@ int run_crosscheck(CrosscheckArguments& arguments) {
   PictureTally picture;
   if (target.picture) check_picture(session, picture);
   if (has_table) std::printf("%s", table_row("all", "", session.total).c_str());
+  if (!session.textbook.empty()) std::printf("\n%s%s", textbook_head().c_str(), session.textbook.c_str());
   const uint64_t wrong_wholes = check_wholes(target, options);
   std::printf("\n%s", session.relations.text().c_str());
   std::printf("%s", session.faults.text().c_str());
   if (picture.pixels > 0) std::printf("%s", picture_text(picture, session.source(Population::camera)).c_str());
   session.records.close();
+  if (!g_stop) std::printf("%s", session.shortest.text().c_str());
   if (session.map) write_map(arguments.map, *session.map);
   if (caught_signal() != 0) return 128 + caught_signal();
   return session.total.failures() + wrong_wholes > 0 ? kIntersectorWrong : int(ExitStatus::done);
@@ -217,6 +227,11 @@ Command add_crosscheck_command(CLI::App& program) {
   command
       ->add_option("--intersector", arguments->intersector, "A shared library to check instead of the built-in shapes")
       ->type_name("FILE.so");
+  command
+      ->add_option("--case", arguments->cases,
+                   "Judge cases of files instead: what --json and the shortest cases of a run are made of")
+      ->type_name("FILE");
+  command->add_flag("--shrink", arguments->shrink, "Look for the shortest case of each of Embree's errors, too");
   command->add_option("--t-ulp", arguments->t_ulp, "By how many floats t may be off")
       ->type_name("X")
       ->check(CLI::NonNegativeNumber.description(""))
@@ -229,7 +244,8 @@ Command add_crosscheck_command(CLI::App& program) {
       "  alhazen crosscheck --shape sphere --population silhouette --rays 1e6\n"
       "  alhazen crosscheck --shape all --rays 1e6\n"
       "  alhazen crosscheck scene.gltf --json disagreements.jsonl --map where.png\n"
-      "  alhazen crosscheck --intersector ./naive_sphere.so --json errors.jsonl");
+      "  alhazen crosscheck --intersector ./naive_sphere.so --json errors.jsonl\n"
+      "  alhazen crosscheck --case errors.jsonl");
   return {command, [arguments] { return run_crosscheck(*arguments); }};
 }
 

@@ -1,5 +1,6 @@
 #include "apps/crosscheck_target.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "apps/pick_camera.h"
@@ -60,8 +61,9 @@ CrosscheckTarget plugin_target(const CrosscheckArguments& arguments) {
   CrosscheckTarget target;
   target.source = " --intersector " + shell_word(arguments.intersector);
   target.plugin = std::make_unique<Plugin>(arguments.intersector);
-  target.families = families_named({target.plugin->family()}, arguments.shape);
-  if (target.families.empty()) refuse_shape(arguments.shape, {target.plugin->family().name});
+  const Family family = family_of(target.plugin->intersector());
+  target.families = families_named({family}, arguments.shape);
+  if (target.families.empty()) refuse_shape(arguments.shape, {family.name});
   target.populations = populations_named(arguments.population, false);
   return target;
 }
@@ -99,6 +101,11 @@ CrosscheckTarget scene_target(const CrosscheckArguments& arguments) {
   if (!arguments.choice.scene.empty()) target.source += " --scene " + shell_word(arguments.choice.scene);
   const auto warn = [](const std::string& text) { std::fprintf(stderr, "warning: %s\n", text.c_str()); };
   target.scene = std::make_unique<Scene>(load_gltf(arguments.scene, warn, arguments.choice).scene);
+  const auto& materials = target.scene->materials;
+  const auto is_cut = [](const Material& m) { return m.alpha_mode == AlphaMode::mask; };
+  if (const auto cut = std::count_if(materials.begin(), materials.end(), is_cut))
+    warn(arguments.scene + ": " + std::to_string(cut) +
+         " of its materials cut holes (alphaMode MASK): rays are judged as if there were none");
   Geometry& geometry = target.scene->geometry;
   bake_single_instances(geometry);
   target.populations = populations_named(arguments.population, true);

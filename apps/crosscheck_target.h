@@ -16,6 +16,8 @@ struct CrosscheckArguments {
   std::string scene;  // a file
   SceneChoice choice;
   std::string shape = "all", population = "all", camera, json, map, intersector;
+  std::vector<std::string> cases;  // files
+  bool shrink = false;             // B's errors, too
   crosscheck::Options options;
   RenderOptions picture;  // its size alone
   int threads = 0;

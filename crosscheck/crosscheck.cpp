@@ -4,9 +4,8 @@
 
 #include <algorithm>
 
-#include "accel/shape_hits.h"
 #include "core/fork_join.h"
-#include "crosscheck/native_subject.h"
+#include "crosscheck/subject_check.h"
 
 namespace alhazen::crosscheck {
 namespace {
@@ -37,87 +36,31 @@ void measure_t(const Answer& answer, const Judgement& truth, uint64_t& judged, u
   ++judged, exact += off == 0, worst = std::max(worst, off);
 }
 
-class ChunkCheck {
- public:
-  ChunkCheck(const Family& family, Population population, const Options& options, const Chunk& chunk,
-             ChunkResult& result)
-      : population_(population), options_(options), chunk_(chunk), result_(result), robust_(family.robust_native) {
-    const uint64_t kind = hashed(family.name);
-    Random random{options.seed, kind, uint64_t(population), chunk.number, 1};
-    result_.subject = family.subject(chunk.number, population == Population::lattice, random);
-    const Judge judge(result_.subject);
-    make_rays(judge, kind);
-    ask();
-    const bool relate = chunk.number % kRelatedChunks == 0 && !options.intersector && !options.only;
-    if (relate)
-      result_.tally.relations = check_relations(result_.subject, rays_, a_, chunk.first,
-                                                {options.seed, kind, uint64_t(population), chunk.number, 3});
-    for (uint64_t k = 0; k < rays_.size(); ++k)
-      if (!options.only || *options.only == chunk.first + k) judge_ray(judge, k);
+void check_chunk(const Family& family, Population population, const Options& options, const Chunk& chunk,
+                 ChunkResult& result) {
+  const uint64_t kind = hashed(family.name);
+  Random random{options.seed, kind, uint64_t(population), chunk.number, 1};
+  result.subject = family.subject(chunk.number, population == Population::lattice, random);
+  SubjectCheck check(result.subject, family.robust_native, options);
+  const RayMaker maker(result.subject, check.judge());
+  std::vector<Rayf> rays;
+  for (uint64_t k = chunk.first; k < chunk.end; ++k) {
+    Random of_ray{options.seed, kind, uint64_t(population), k, 2};
+    rays.push_back(maker.ray(population, of_ray));
   }
-
- private:
-  void make_rays(const Judge& judge, uint64_t kind) {
-    const RayMaker maker(result_.subject, judge);
-    for (uint64_t k = chunk_.first; k < chunk_.end; ++k) {
-      Random random{options_.seed, kind, uint64_t(population_), k, 2};
-      rays_.push_back(maker.ray(population_, random));
-    }
+  check.ask(rays, result.tally);
+  if (chunk.number % kRelatedChunks == 0 && !options.intersector && !options.only)
+    result.tally.relations = check_relations(result.subject, rays, check.answers(), chunk.first,
+                                             {options.seed, kind, uint64_t(population), chunk.number, 3});
+  for (uint64_t k = 0; k < rays.size(); ++k) {
+    if (options.only && *options.only != chunk.first + k) continue;
+    result.cases.push_back(check.judged(k, population, chunk.first + k));
+    const Case& c = result.cases.back();
+    count(c, result.tally);
+    if (c.verdict != Verdict::out_of_domain)
+      count_textbook(result.subject, c.ray, c.truth, options.t_tolerance_a, result.tally.textbook);
   }
-
-  /// Rays out of the domain are not asked about: Debian's Embree ends the program on some of them.
-  void ask() {
-    std::vector<Rayf> rays = rays_;
-    for (Rayf& ray : rays)
-      if (!in_domain(ray)) ray = Rayf{{0, 0, 0}, {0, 0, 1}};
-    const DoubtCounts before = doubt_counts();
-    (options_.intersector ? plugin_party(*options_.intersector) : custom_party(result_.subject))->answer(rays, a_);
-    const DoubtCounts after = doubt_counts();
-    result_.tally.a_quads = after.quad - before.quad, result_.tally.a_rationals = after.exact - before.exact;
-    const auto native = native_subject(result_.subject);
-    if (!native) return;
-    if (const auto party = native_party(native->subject, robust_)) party->answer(rays, b_);
-    if (native->rounded) native_judge_ = std::make_unique<Judge>(native->subject);
-  }
-
-  void judge_ray(const Judge& judge, uint64_t k) {
-    Case c{.population = population_,
-           .index = chunk_.first + k,
-           .subject = &result_.subject,
-           .ray = rays_[k],
-           .a = a_[k],
-           .b = {},
-           .truth = {},
-           .b_truth = {},
-           .b_fault = {},
-           .verdict = Verdict::out_of_domain,
-           .robust_native = robust_};
-    if (!b_.empty() && b_[k].asked) c.b = b_[k];
-    if (in_domain(c.ray)) decide(judge, c);
-    count(c, result_.tally);
-    result_.cases.push_back(std::move(c));
-  }
-
-  void decide(const Judge& judge, Case& c) const {
-    c.truth = judge.closest(c.ray);
-    if (c.truth.hit && !std::isfinite(c.truth.t)) return;  // further than floats reach
-    c.a_fault = fault_of(c.a, c.truth, options_.t_tolerance_a);
-    if (c.b && native_judge_) c.b_truth = native_judge_->closest(c.ray);
-    if (c.b) c.b_fault = fault_of(*c.b, truth_for_b(c), options_.t_tolerance_b);
-    c.verdict = verdict_of(c.a_fault, c.b_fault, c.truth);
-    if (c.index % kSecondInstance == 0 && !same_answer(c.truth, judge.closest_exactly(c.ray)))
-      c.verdict = Verdict::unexplained;
-  }
-
-  Population population_;
-  const Options& options_;
-  Chunk chunk_;
-  ChunkResult& result_;
-  bool robust_;
-  std::vector<Rayf> rays_;
-  std::vector<Answer> a_, b_;
-  std::unique_ptr<Judge> native_judge_;  // where B holds another surface
-};
+}
 
 std::vector<Chunk> chunks_of(const Family& family, const Options& options) {
   std::vector<Chunk> chunks;
@@ -155,6 +98,7 @@ void Tally::add(const Tally& o) {
   a_judged += o.a_judged, a_exact += o.a_exact, b_judged += o.b_judged, b_exact += o.b_exact;
   a_worst = std::max(a_worst, o.a_worst), b_worst = std::max(b_worst, o.b_worst);
   for (size_t k = 0; k < relations.size(); ++k) relations[k].add(o.relations[k]);
+  for (size_t k = 0; k < textbook.size(); ++k) textbook[k].add(o.textbook[k]);
   a_quads += o.a_quads, a_rationals += o.a_rationals, judge_rationals += o.judge_rationals;
 }
 
@@ -167,7 +111,7 @@ Tally check(const Family& family, Population population, const Options& options,
     {
       const ForkJoin order;
       tbb::parallel_for(size_t(0), count, order.task([&](size_t k) {
-        ChunkCheck(family, population, options, chunks[first + k], results[k]);
+        check_chunk(family, population, options, chunks[first + k], results[k]);
       }));
     }
     for (const ChunkResult& result : results) {

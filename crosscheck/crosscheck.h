@@ -5,8 +5,10 @@
 #include <functional>
 #include <optional>
 
+#include "crosscheck/check_intersector.h"
 #include "crosscheck/population.h"
 #include "crosscheck/relations.h"
+#include "crosscheck/textbook_triangles.h"
 #include "crosscheck/verdict.h"
 
 namespace alhazen::crosscheck {
@@ -14,10 +16,10 @@ namespace alhazen::crosscheck {
 struct Options {
   uint64_t rays = 10000;  // of one family and population
   uint64_t seed = 1;
-  std::optional<uint64_t> only = {};                 // the number of the one ray to judge
-  double t_tolerance_a = 1;                          // in floats
-  double t_tolerance_b = 16;                         // as many as Embree's own tests allow
-  const alhazen_intersector* intersector = nullptr;  // in the place of A
+  std::optional<uint64_t> only = {};         // the number of the one ray to judge
+  double t_tolerance_a = 1;                  // in floats
+  double t_tolerance_b = 16;                 // as many as Embree's own tests allow
+  const Intersector* intersector = nullptr;  // in the place of A
 };
 
 /// One ray and what was said of it.
@@ -51,6 +53,7 @@ struct Tally {
   uint64_t a_judged = 0, a_exact = 0, b_judged = 0, b_exact = 0;  // hits in common with the judge; t correctly rounded
   double a_worst = 0, b_worst = 0;                                // floats
   RelationCounts relations{};                                     // A asked in other ways
+  TextbookCounts textbook{};                                      // triangles alone
   uint64_t a_quads = 0, a_rationals = 0, judge_rationals = 0;
 
   [[nodiscard]] uint64_t of(Verdict v) const { return verdicts[size_t(v)]; }
@@ -58,7 +61,7 @@ struct Tally {
   void add(const Tally& other);
 };
 
-/// Adds one case to what is counted of it alone: everything but `a_quads` and `a_rationals`.
+/// Adds one case to what is counted of it alone: everything but `a_quads`, `a_rationals` and `textbook`.
 void count(const Case& c, Tally& tally);
 
 /// What becomes of a run while it goes on, all called from one thread in the order of the rays.

@@ -151,6 +151,11 @@ Tie tie_of(const Composite& composite, const ExactLine& line) {
 
 }  // namespace
 
+const char* name_of(Tie tie) {
+  constexpr const char* names[] = {"none", "edge", "tangent", "coplanar"};
+  return names[size_t(tie)];
+}
+
 Tie tie_of(const Surface& surface, const ExactLine& line) {
   return std::visit([&](const auto& s) { return tie_of(s, line); }, surface);
 }

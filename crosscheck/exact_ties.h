@@ -13,6 +13,7 @@ enum class Tie : uint8_t {
   tangent,   // touches the curved wall, or passes through an apex
   coplanar,  // runs within a face
 };
+[[nodiscard]] const char* name_of(Tie tie);
 
 /// Whether the line, in the surface's own space, meets it so. Exact.
 [[nodiscard]] Tie tie_of(const Surface& surface, const ExactLine& line);

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "crosscheck/intersector_plugin.h"
+#include "crosscheck/check_intersector.h"
 #include "crosscheck/subject.h"
 
 namespace alhazen::crosscheck {
@@ -52,7 +52,7 @@ class Party {
 [[nodiscard]] std::unique_ptr<Party> native_party(const Subject& subject, bool robust);
 
 /// A user geometry that answers by the intersector, which must outlive it.
-[[nodiscard]] std::unique_ptr<Party> plugin_party(const alhazen_intersector& intersector);
+[[nodiscard]] std::unique_ptr<Party> plugin_party(const Intersector& intersector);
 
 /// What Embree is here.
 struct EmbreeFacts {

@@ -23,6 +23,28 @@ void expect(bool good, const std::string& text, const char* what) {
   if (!good) throw std::invalid_argument("'" + text + "': expected " + what);
 }
 
+/// The C interface as an object.
+class PluginIntersector final : public Intersector {
+ public:
+  explicit PluginIntersector(const alhazen_intersector& c) : c_(c) {}
+
+  [[nodiscard]] std::string name() const override { return c_.name; }
+  [[nodiscard]] std::string surface() const override { return c_.surface; }
+  void bounds(float lower[3], float upper[3]) const override { c_.bounds(lower, upper); }
+  [[nodiscard]] bool intersect(const alhazen_ray& ray, alhazen_hit& hit) const override {
+    return c_.intersect(&ray, &hit) != 0;
+  }
+  void intersect_packet(const alhazen_ray* rays, int count, alhazen_hit* hits, int* found) const override {
+    if (c_.intersect_packet)
+      c_.intersect_packet(rays, count, hits, found);
+    else
+      Intersector::intersect_packet(rays, count, hits, found);
+  }
+
+ private:
+  const alhazen_intersector& c_;
+};
+
 }  // namespace
 
 Surface parse_surface(const std::string& text) {
@@ -69,20 +91,23 @@ Plugin::Plugin(const std::string& file) {
   using Get = const alhazen_intersector* (*)();
   const auto get = reinterpret_cast<Get>(dlsym(library_.get(), "alhazen_get_intersector"));
   if (!get) throw LoadError(file, "", "exports no alhazen_get_intersector, see crosscheck/intersector_plugin.h");
-  intersector_ = get();
-  if (!intersector_ || intersector_->version != ALHAZEN_INTERSECTOR_VERSION)
+  const alhazen_intersector* c = get();
+  if (!c || c->version != ALHAZEN_INTERSECTOR_VERSION)
     throw LoadError(file, "", "is not of version " + std::to_string(ALHAZEN_INTERSECTOR_VERSION));
-  if (!intersector_->name || !intersector_->surface || !intersector_->bounds || !intersector_->intersect)
+  if (!c->name || !c->surface || !c->bounds || !c->intersect)
     throw LoadError(file, "", "lacks a name, a surface, `bounds` or `intersect`");
   try {
-    surface_ = parse_surface(intersector_->surface);
+    (void)parse_surface(c->surface);
   } catch (const std::invalid_argument& error) {
     throw LoadError(file, "", error.what());
   }
+  intersector_ = std::make_unique<const PluginIntersector>(*c);
 }
 
-Family Plugin::family() const {
-  return {intersector_->name, [surface = surface_](uint64_t, bool, Random&) { return Subject{surface, {}}; }};
+Family family_of(const Intersector& intersector) {
+  return {intersector.name(), [surface = parse_surface(intersector.surface())](uint64_t, bool, Random&) {
+            return Subject{surface, {}};
+          }};
 }
 
 }  // namespace alhazen::crosscheck

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "crosscheck/intersector_plugin.h"
+#include "crosscheck/check_intersector.h"
 #include "crosscheck/subject.h"
 
 namespace alhazen::crosscheck {
@@ -16,20 +16,20 @@ class Plugin {
   /// claims to be a surface that is not known.
   explicit Plugin(const std::string& file);
 
-  [[nodiscard]] const alhazen_intersector& intersector() const { return *intersector_; }
-  /// Of one subject: the surface that it claims to be.
-  [[nodiscard]] Family family() const;
+  [[nodiscard]] const Intersector& intersector() const { return *intersector_; }
 
  private:
   struct Close {
     void operator()(void* library) const;
   };
   std::unique_ptr<void, Close> library_;
-  const alhazen_intersector* intersector_ = nullptr;
-  Surface surface_;
+  std::unique_ptr<const Intersector> intersector_;
 };
 
 /// "sphere 1" and the like, as crosscheck/intersector_plugin.h lists them. Throws std::invalid_argument.
 [[nodiscard]] Surface parse_surface(const std::string& text);
+
+/// Of one subject: the surface that an intersector claims to be. Throws std::invalid_argument.
+[[nodiscard]] Family family_of(const Intersector& intersector);
 
 }  // namespace alhazen::crosscheck

@@ -8,7 +8,7 @@ namespace {
 
 /// What the geometry's callbacks read and write.
 struct Shared {
-  const alhazen_intersector* intersector;
+  const Intersector* intersector;
   std::vector<alhazen_hit>* hits;  // by ray
 };
 
@@ -36,10 +36,7 @@ void intersect(const RTCIntersectFunctionNArguments* args) {
   int count = 0;
   for (unsigned i = 0; i < args->N; ++i)
     if (args->valid[i]) embree::reject(args, i), rays[count] = ray_of(args, i), lanes[count++] = i;
-  if (shared.intersector->intersect_packet)
-    shared.intersector->intersect_packet(rays, count, hits, found);
-  else
-    for (int k = 0; k < count; ++k) found[k] = shared.intersector->intersect(&rays[k], &hits[k]);
+  shared.intersector->intersect_packet(rays, count, hits, found);
   for (int k = 0; k < count; ++k) {
     if (!found[k]) continue;
     embree::accept(args, lanes[k], hits[k].t);
@@ -49,7 +46,7 @@ void intersect(const RTCIntersectFunctionNArguments* args) {
 
 class PluginParty final : public Party {
  public:
-  explicit PluginParty(const alhazen_intersector& intersector) : shared_{&intersector, &hits_} {
+  explicit PluginParty(const Intersector& intersector) : shared_{&intersector, &hits_} {
     RTCGeometry g = embree::new_geometry(scene_.device(), RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(g, 1);
     rtcSetGeometryUserData(g, &shared_);
@@ -80,7 +77,7 @@ class PluginParty final : public Party {
 
 }  // namespace
 
-std::unique_ptr<Party> plugin_party(const alhazen_intersector& intersector) {
+std::unique_ptr<Party> plugin_party(const Intersector& intersector) {
   return std::make_unique<PluginParty>(intersector);
 }
 

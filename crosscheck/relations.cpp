@@ -1,5 +1,6 @@
 #include "crosscheck/relations.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "crosscheck/exact_ties.h"
@@ -54,17 +55,12 @@ double random_power(Random& random) { return std::exp2(random.integer(1, 12) * (
 double leading_power(float x) { return x == 0 ? 0 : -std::copysign(std::exp2(std::ilogb(x)), double(x)); }
 
 std::optional<Surface> reversed(const Polygon& polygon) {
-  std::vector<uint32_t> next(polygon.vertices.size());
-  for (const Polygon::Edge& edge : polygon.edges) next[edge.first] = edge.second;
-  std::vector<std::vector<Vec3d>> loops(1);
-  for (uint32_t k = 0; k < next.size(); ++k) {
-    loops.back().insert(loops.back().begin(), polygon.vertices[k]);
-    if (next[k] != k + 1 && k + 1 < next.size()) loops.emplace_back();
-  }
+  auto loops = loops_of(polygon);
+  for (auto& loop : loops) std::reverse(loop.begin(), loop.end());
   try {
     return make_polygon(loops);
   } catch (const PolygonError&) {
-    return std::nullopt;  // vertices without an edge between them: the loops cannot be told
+    return std::nullopt;  // loops that meet in a repeated vertex
   }
 }
 std::optional<Surface> reversed(const Triangle& t) { return Triangle{t.a, t.c, t.b}; }

@@ -42,7 +42,6 @@ Json answer_json(const Answer& answer, const Judgement& truth, Fault fault) {
 
 Json truth_json(const Judgement& truth, bool triangle) {
   constexpr const char* kSides[] = {"inside", "grazing", "outside"};
-  constexpr const char* kTies[] = {"none", "edge", "tangent", "coplanar"};
   constexpr const char* kBy[] = {"double intervals", "double-double intervals", "rationals"};
   Json json{{"hit", truth.hit}};
   if (truth.hit) {
@@ -50,7 +49,7 @@ Json truth_json(const Judgement& truth, bool triangle) {
     json["normal"] = hex(truth.normal_object);
     if (triangle) json["uv"] = {hex(truth.u), hex(truth.v)};
   }
-  json["tie"] = kTies[size_t(truth.tie)], json["by"] = kBy[size_t(truth.by)];
+  json["tie"] = name_of(truth.tie), json["by"] = kBy[size_t(truth.by)];
   return json;
 }
 
@@ -64,6 +63,28 @@ Json edge_json(const Subject& subject, const Rayf& ray) {
   if (!edge) return nullptr;
   return {{"nearest", edge->feature}, {"distance_ulp", edge->ulp}};
 }
+
+/// What was asked and what everybody says.
+void append_answers(const Case& c, Json& json) {
+  json["ray"] = to_json(c.ray);
+  json["subject"] = c.subject ? to_json(*c.subject) : Json();
+  json["A"] = answer_json(c.a, c.truth, c.a_fault);
+  name_surface(json["A"], c.a_surface);
+  const bool triangle = c.subject && std::holds_alternative<Triangle>(c.subject->surface);
+  if (c.b && c.b_fault) json["B"] = answer_json(*c.b, truth_for_b(c), *c.b_fault), name_surface(json["B"], c.b_surface);
+  if (c.b_truth) json["J_of_surface_in_floats"] = truth_json(*c.b_truth, triangle);
+  json["J"] = truth_json(c.truth, triangle);
+  name_surface(json["J"], c.true_surface);
+  json["edge"] = c.subject ? edge_json(*c.subject, c.ray) : Json();
+  const EmbreeFacts& embree = embree_facts();
+  json["embree"] = {{"version", embree.version},
+                    {"isa", embree.isa},
+                    {"lanes", embree.lanes},
+                    {"scene_flags_A", "robust"},
+                    {"scene_flags_B", c.robust_native ? "robust" : "none"}};
+}
+
+std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 std::string paragraph(const std::string& title, const std::map<std::pair<std::string, Fault>, std::string>& lines) {
   std::string text = title + "\n";
@@ -89,6 +110,25 @@ std::string table_row(const std::string& family, const std::string& population, 
       n(t.of(Verdict::unexplained)), percent(t.a_exact, t.a_judged).c_str(), floats(t.a_judged, t.a_worst).c_str(),
       percent(t.b_exact, t.b_judged).c_str(), floats(t.b_judged, t.b_worst).c_str(), n(t.a_quads), n(t.a_rationals),
       n(t.judge_rationals));
+}
+
+std::string textbook_head() {
+  return formatted("%-15s %-10s %8s | %-45s | %-45s\n", "The textbook's", "", "", "plane and half-spaces",
+                   "3x3 system") +
+         formatted("%-15s %-10s %8s | %7s %7s %7s %10s %9s | %7s %7s %7s %10s %9s\n", "triangles", "population", "rays",
+                   "misses", "hits", "wrong t", "exact %", "worst", "misses", "hits", "wrong t", "exact %", "worst");
+}
+
+std::string textbook_row(const std::string& family, const std::string& population, const TextbookCounts& counts) {
+  const auto n = [](uint64_t v) { return static_cast<unsigned long long>(v); };
+  if (counts.front().rays == 0) return "";
+  std::string row = formatted("%-15s %-10s %8llu", family.c_str(), population.c_str(), n(counts.front().rays));
+  for (const TextbookCount& c : counts) {
+    const auto faults = [&](Fault fault) { return n(c.faults[size_t(fault)]); };
+    row += formatted(" | %7llu %7llu %7llu %10s %9s", faults(Fault::false_miss), faults(Fault::false_hit),
+                     faults(Fault::wrong_t), percent(c.exact, c.judged).c_str(), floats(c.judged, c.worst).c_str());
+  }
+  return row + "\n";
 }
 
 void RelationReport::add(const RelationCounts& counts, const std::function<std::string(uint64_t)>& command) {
@@ -125,30 +165,21 @@ std::string reproduction(const std::string& family, Population population, uint6
          " --seed " + std::to_string(seed) + " --only " + std::to_string(index);
 }
 
+std::string record(const std::string& about, const Case& c) {
+  Json json{{"about", about}, {"verdict", name_of(c.verdict)}};
+  append_answers(c, json);
+  return dumped(json);
+}
+
 std::string record(const std::string& family, const Case& c, const Options& options, const std::string& source) {
   Json json{{"verdict", name_of(c.verdict)},
             {"shape", family},
             {"population", name_of(c.population)},
             {"seed", options.seed},
-            {"index", c.index},
-            {"ray", to_json(c.ray)},
-            {"subject", c.subject ? to_json(*c.subject) : Json()},
-            {"A", answer_json(c.a, c.truth, c.a_fault)}};
-  name_surface(json["A"], c.a_surface);
-  const bool triangle = c.subject && std::holds_alternative<Triangle>(c.subject->surface);
-  if (c.b && c.b_fault) json["B"] = answer_json(*c.b, truth_for_b(c), *c.b_fault), name_surface(json["B"], c.b_surface);
-  if (c.b_truth) json["J_of_surface_in_floats"] = truth_json(*c.b_truth, triangle);
-  json["J"] = truth_json(c.truth, triangle);
-  name_surface(json["J"], c.true_surface);
-  json["edge"] = c.subject ? edge_json(*c.subject, c.ray) : Json();
-  const EmbreeFacts& embree = embree_facts();
-  json["embree"] = {{"version", embree.version},
-                    {"isa", embree.isa},
-                    {"lanes", embree.lanes},
-                    {"scene_flags_A", "robust"},
-                    {"scene_flags_B", c.robust_native ? "robust" : "none"}};
+            {"index", c.index}};
+  append_answers(c, json);
   json["again"] = reproduction(family, c.population, c.index, options.seed, source);
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return dumped(json);
 }
 
 std::string picture_text(const PictureTally& picture, const std::string& source) {

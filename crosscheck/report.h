@@ -20,12 +20,20 @@ namespace alhazen::crosscheck {
 [[nodiscard]] std::string reproduction(const std::string& family, Population population, uint64_t index, uint64_t seed,
                                        const std::string& source);
 
+/// A case without where it comes from: `stated_case` reads it back, and knows the judge's answer. One line of JSON.
+[[nodiscard]] std::string record(const std::string& about, const Case& c);
+
 /// One line of JSON without its end: ray and subject in hexadecimal floats, what the parties say, how far off each is.
 [[nodiscard]] std::string record(const std::string& family, const Case& c, const Options& options,
                                  const std::string& source);
 
 /// How the renderer's own picture compares, in a sentence. `source`: as for `reproduction`.
 [[nodiscard]] std::string picture_text(const PictureTally& picture, const std::string& source);
+
+/// What the textbook's triangles did with the rays of one family and population: a head, and a row; none for others.
+[[nodiscard]] std::string textbook_head();
+[[nodiscard]] std::string textbook_row(const std::string& family, const std::string& population,
+                                       const TextbookCounts& counts);
 
 /// How often a party is wrong, and the first example of each fault.
 class Faults {

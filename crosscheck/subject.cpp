@@ -224,6 +224,20 @@ Surface make_unit_sphere(Random&, bool) { return Sphere{1}; }
 
 }  // namespace
 
+std::vector<std::vector<Vec3d>> loops_of(const Polygon& polygon) {
+  const auto& vertices = polygon.vertices;
+  std::vector<uint32_t> next(vertices.size());
+  // Between equal vertices there is no edge: they follow each other, or close their loop.
+  for (uint32_t k = 0; k + 1 < next.size(); ++k) next[k] = vertices[k] == vertices[k + 1] ? k + 1 : 0;
+  for (const Polygon::Edge& edge : polygon.edges) next[edge.first] = edge.second;
+  std::vector<std::vector<Vec3d>> loops(1);
+  for (uint32_t k = 0; k < next.size(); ++k) {
+    loops.back().push_back(vertices[k]);
+    if (next[k] != k + 1 && k + 1 < next.size()) loops.emplace_back();
+  }
+  return loops;
+}
+
 const std::vector<Family>& built_in_families() {
   static const std::vector<Family> families = {family("sphere", make_sphere),
                                                family("ellipsoid", make_unit_sphere, stretched_place),

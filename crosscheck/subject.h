@@ -35,6 +35,10 @@ struct Subject {
   return std::visit([](const auto& s) { return bounds(s); }, surface);
 }
 
+/// What `make_polygon` made it of; a loop that begins where the one before it repeats its own beginning is joined to
+/// it.
+[[nodiscard]] std::vector<std::vector<Vec3d>> loops_of(const Polygon& polygon);
+
 /// Subjects of one kind.
 struct Family {
   std::string name;

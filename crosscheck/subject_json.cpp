@@ -22,29 +22,38 @@ Json surface_json(const Box& b) { return {{"box", {{"size", hex(b.size)}}}}; }
 Json surface_json(const Quadric& q) {
   Json coefficients = Json::array();
   for (const double c : q.coefficients) coefficients.push_back(hex(c));
-  return {{"quadric",
-           {{"coefficients", coefficients}, {"min", hex(q.box.lower)}, {"max", hex(q.box.upper)}, {"solid", q.solid}}}};
+  Json json{{"coefficients", coefficients}, {"solid", q.solid}};
+  if (q.whole)
+    json["whole"] = true;  // its box follows from the coefficients
+  else
+    json["min"] = hex(q.box.lower), json["max"] = hex(q.box.upper);
+  return {{"quadric", json}};
 }
 Json surface_json(const Triangle& t) { return {{"triangle", {hex(t.a), hex(t.b), hex(t.c)}}}; }
 Json surface_json(const Polygon& p) {
-  Json vertices = Json::array();
-  for (const Vec3d& v : p.vertices) vertices.push_back(hex(v));
-  return {{"polygon", {{"vertices_of_all_loops", vertices}}}};
-}
-Json surface_json(const Composite& c) {
-  constexpr const char* kOperations[] = {"leaf", "union", "intersection", "difference"};
-  Json leaves = Json::array(), nodes = Json::array();
-  for (const CompositeLeaf& leaf : c.leaves) {
-    Json maps = Json::array();
-    for (const Affine3d& m : leaf.chain) maps.push_back(map_json(m));
-    Json body = std::visit([](const auto& b) { return surface_json(b); }, leaf.body);
-    body["maps"] = maps;
-    leaves.push_back(body);
+  Json loops = Json::array();
+  for (const auto& vertices : loops_of(p)) {
+    loops.push_back(Json::array());
+    for (const Vec3d& v : vertices) loops.back().push_back(hex(v));
   }
-  for (const CompositeNode& node : c.nodes)
-    nodes.push_back(Json{kOperations[size_t(node.operation)], node.first, node.count});
-  return {{"composite", {{"nodes", nodes}, {"leaves", leaves}}}};
+  return {{"polygon", {{"loops", loops}}}};
 }
+
+/// A part of the tree: a body under its maps, the outermost first, or an operation on such parts.
+Json part_json(const Composite& c, const CompositeNode& node) {
+  constexpr const char* kOperations[] = {"leaf", "union", "intersection", "difference"};
+  if (node.operation == CompositeNode::Operation::leaf) {
+    const CompositeLeaf& leaf = c.leaves[node.first];
+    Json json = std::visit([](const auto& b) { return surface_json(b); }, leaf.body);
+    json["maps"] = Json::array();
+    for (const Affine3d& m : leaf.chain) json["maps"].push_back(map_json(m));
+    return json;
+  }
+  Json operands = Json::array();
+  for (uint32_t k = 0; k < node.count; ++k) operands.push_back(part_json(c, c.nodes[node.first + k]));
+  return {{"operation", kOperations[size_t(node.operation)]}, {"operands", operands}};
+}
+Json surface_json(const Composite& c) { return {{"composite", part_json(c, c.nodes.front())}}; }
 
 }  // namespace
 

@@ -1,4 +1,5 @@
-// Subjects and rays as JSON, every number as a hexadecimal float: what is written is what was tested.
+// Subjects and rays as JSON, every number as a hexadecimal float: what is written is what was tested, and can be read
+// back.
 #pragma once
 
 #include <nlohmann/json.hpp>

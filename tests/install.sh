@@ -10,3 +10,6 @@ cmake --build "$work/build" >/dev/null
 status=0
 "$work/prefix/bin/alhazen" crosscheck --rays 2048 --intersector "$(find "$work/build" -name 'libnaive_sphere.so')" || status=$?
 [ "$status" = 5 ] || { echo "expected status 5, got $status"; exit 1; }
+status=0
+"$work/build/check_naive_sphere" || status=$?
+[ "$status" = 5 ] || { echo "expected status 5, got $status"; exit 1; }

@@ -158,7 +158,7 @@ TEST(Crosscheck, FindsTheErrorsOfEmbreesOwnSphere) {
 TEST(Crosscheck, FindsTheErrorsOfANaiveSphereAndSaysWhatTheyAre) {
   const Plugin plugin(ALHAZEN_NAIVE_SPHERE);
   Options options{.rays = 4096, .intersector = &plugin.intersector()};
-  const Tally tally = check(plugin.family(), Population::silhouette, options, {});
+  const Tally tally = check(family_of(plugin.intersector()), Population::silhouette, options, {});
   EXPECT_GT(tally.failures(), 0u);
   EXPECT_GT(tally.a_faults[size_t(Fault::false_miss)], 0u);
   EXPECT_GT(tally.a_faults[size_t(Fault::false_hit)], 0u);

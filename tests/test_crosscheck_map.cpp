@@ -40,7 +40,8 @@ TEST(CrosscheckMap, AWrongIntersectorShowsWhereItIsWrongAndARightOneDoesNot) {
     map.add("naive", c);
     if (mark_of(c) == Mark::custom_wrong) wrong.push_back(map_places(c).front());
   };
-  (void)check(plugin.family(), Population::silhouette, {.rays = 4096, .intersector = &plugin.intersector()}, observer);
+  (void)check(family_of(plugin.intersector()), Population::silhouette,
+              {.rays = 4096, .intersector = &plugin.intersector()}, observer);
   const ColorImage image = map.image();
   ASSERT_GT(wrong.size(), 100u);
   for (const MapPlace& place : wrong) {
