@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "accel/baking.h"
+
 namespace alhazen {
 namespace {
 
@@ -45,13 +47,16 @@ std::vector<Vec3d> outline(const Mesh& mesh, uint64_t uses) {
 
 }  // namespace
 
-void bake_single_instances(Geometry& geometry) {
+void bake_single_instances(Geometry& geometry) { bake_single_instances(geometry, {}); }
+
+void bake_single_instances(Geometry& geometry, std::span<const char> moving) {
+  const auto stays = [&](size_t mesh) { return moving.empty() || !moving[mesh]; };
   std::vector<uint32_t> uses(geometry.meshes.size(), 0);
   for (const MeshInstance& instance : geometry.mesh_instances) ++uses[instance.mesh];
   for (size_t i = 0; i < uses.size(); ++i)
-    if (uses[i] == 0) geometry.meshes[i].parts.clear();
+    if (uses[i] == 0 && stays(i)) geometry.meshes[i].parts.clear();
   for (MeshInstance& instance : geometry.mesh_instances) {
-    if (uses[instance.mesh] != 1 || instance.world_from_object == Affine3d{}) continue;
+    if (uses[instance.mesh] != 1 || !stays(instance.mesh) || instance.world_from_object == Affine3d{}) continue;
     for (TriangleMesh& part : geometry.meshes[instance.mesh].parts) move_to_world(part, instance.world_from_object);
     instance.world_from_object = {};
   }

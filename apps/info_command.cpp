@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "loaders/gltf.h"
+#include "loaders/gltf_file.h"
 
 namespace alhazen {
 namespace {
@@ -84,9 +84,13 @@ Json extensions_json(const LoadedScene& loaded) {
   return extensions;
 }
 
-Json info_json(const std::string& file, const LoadedScene& loaded) {
-  Json info{{"file", file}};
+Json info_json(const std::string& name, const WarningSink& warn) {
+  GltfFile file(name, warn);
+  const LoadedScene loaded = file.load(0);
+  Json info{{"file", name}};
   info.update(counts_json(loaded));
+  info["skins"] = file.skin_count();
+  info["animations"] = file.animation_names();
   info["lights"] = lights_json(loaded.scene);
   info["cameras"] = cameras_json(loaded.scene);
   info["bounds"] = bounds_json(loaded.scene.geometry);
@@ -126,6 +130,16 @@ std::string light_text(const Json& light) {
   return light["kind"].get<std::string>() + (name.empty() ? "" : " '" + name + "'");
 }
 
+/// The names, each after its index.
+std::string animations_text(const Json& names) {
+  std::string text;
+  for (const Json& name : names) {
+    const auto index = std::to_string(&name - &names[0]);
+    text += (text.empty() ? "" : ", ") + index + (name == "" ? "" : " '" + name.get<std::string>() + "'");
+  }
+  return text.empty() ? "none" : text;
+}
+
 std::string extension_text(const Json& extension) {
   const std::string meaning = extension["meaning"];
   return extension["name"].get<std::string>() + (extension["required"].get<bool>() ? ", required, " : ", ") +
@@ -150,13 +164,14 @@ std::string info_text(const Json& info) {
          row("triangles", number(info["triangles"]) + ", as placed " + number(info["triangles_placed"])) +
          row("shapes", placed_text(info, "shapes", "shape_instances")) + row("materials", number(info["materials"])) +
          row("textures", number(info["textures"]) + ", of images " + number(info["images"])) +
+         row("skins", number(info["skins"])) + row("animations", animations_text(info["animations"])) +
          rows("lights", info["lights"], light_text) + rows("cameras", info["cameras"], camera_text) +
          row("bounds", bounds_text(info["bounds"])) + rows("extensions", info["extensions"], extension_text);
 }
 
 int run_info(const std::string& file, bool as_json) {
   const auto warn = [](const std::string& text) { std::fprintf(stderr, "warning: %s\n", text.c_str()); };
-  const Json info = info_json(file, load_gltf(file, warn));
+  const Json info = info_json(file, warn);
   const std::string text = as_json ? info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : info_text(info);
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
     throw WriteError("standard output", "cannot be written");

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <concepts>
 #include <cstdio>
 
 #include "apps/usage.h"
@@ -45,6 +46,26 @@ CLI::Validator finite() {
           ""};
 }
 
+void add_time_options(CLI::App& command, RenderArguments& arguments) {
+  command
+      .add_option("--animation", arguments.time.animation,
+                  "Index or name of an animation, all, or none: the rest pose; by default none, with a time the first")
+      ->type_name("INDEX|NAME");
+  command.add_option("--time", arguments.time.time, "Seconds into the animation")
+      ->type_name("SECONDS")
+      ->check(finite());
+  command
+      .add_option_function<std::string>(
+          "--frames", [&](const std::string& text) { arguments.frames = parse_frames(text); },
+          "A sequence: frame N is at N / fps seconds, in the file whose name has N in place of ####")
+      ->type_name("FIRST:LAST[:STEP]");
+  command.add_option("--fps", arguments.fps, "Frames of a second")
+      ->type_name("N")
+      ->check(finite())
+      ->check(CLI::PositiveNumber.description(""))
+      ->capture_default_str();
+}
+
 void add_picture_options(CLI::App& command, RenderArguments& arguments) {
   RenderOptions& options = arguments.options;
   add_size_option(command, options);
@@ -60,6 +81,7 @@ void add_picture_options(CLI::App& command, RenderArguments& arguments) {
       .add_option("--variant", arguments.choice.variant,
                   "Index or name of a variant of the materials (KHR_materials_variants)")
       ->type_name("INDEX|NAME");
+  add_time_options(command, arguments);
   add_choice<Integrator>(command, "--integrator", options.integrator,
                          {{"whitted", Integrator::whitted}, {"signature", Integrator::signature}},
                          "What a pixel shows: light, or which node, primitive and material are seen");
@@ -154,7 +176,8 @@ void add_run_options(CLI::App& command, RenderArguments& arguments) {
 }
 
 /// The shortest text that reads back as the same number.
-std::string number(float v) {
+template <std::floating_point T>
+std::string number(T v) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, v).ptr};
 }
@@ -181,6 +204,9 @@ void add_render_options(CLI::App& command, RenderArguments& arguments) {
 }
 
 void check_arguments(const RenderArguments& arguments) {
+  if (arguments.frames && arguments.time.time) throw UsageError("--time: frames have times of their own");
+  if (arguments.frames && !has_frame_place(arguments.output))
+    throw UsageError("--frames: '" + arguments.output + "' has no place for the number, like out.####.exr");
   check_encoding(arguments.output, arguments.encoding);
   const bool ids = arguments.options.integrator == Integrator::signature;
   if (arguments.view != ViewTransform::standard && image_format(arguments.output).linear)
@@ -192,11 +218,21 @@ void check_arguments(const RenderArguments& arguments) {
     throw UsageError("--transparent: '" + arguments.output + "' cannot hold alpha; .exr, .png, .tif and .webp can");
 }
 
+RenderArguments frame_arguments(const RenderArguments& sequence, int frame) {
+  RenderArguments still = sequence;
+  still.frames.reset();
+  still.output = frame_file(sequence.output, frame);
+  still.time.time = frame / sequence.fps;
+  return still;
+}
+
 std::string picture_options(const RenderArguments& arguments) {
   const RenderOptions& options = arguments.options;
   std::string text = "--size " + std::to_string(options.width) + "x" + std::to_string(options.height);
   if (!arguments.choice.scene.empty()) text += " --scene '" + arguments.choice.scene + "'";
   if (!arguments.choice.variant.empty()) text += " --variant '" + arguments.choice.variant + "'";
+  if (!arguments.time.animation.empty()) text += " --animation '" + arguments.time.animation + "'";
+  if (arguments.time.time) text += " --time " + number(*arguments.time.time);
   if (!arguments.camera.empty()) text += " --camera '" + arguments.camera + "'";
   text += options.integrator == Integrator::signature ? " --integrator signature" : " --integrator whitted";
   text += " --spp " + std::to_string(options.samples) + " --max-depth " + std::to_string(options.max_depth) +

@@ -5,10 +5,11 @@
 #include <optional>
 #include <string>
 
+#include "apps/frame_range.h"
 #include "apps/progress.h"
 #include "apps/view_transform.h"
 #include "core/vec.h"
-#include "loaders/gltf.h"
+#include "loaders/gltf_file.h"
 #include "loaders/image_file.h"
 #include "renderer/render.h"
 
@@ -19,7 +20,10 @@ enum class LightChoice : uint8_t { automatic, scene, studio };
 struct RenderArguments {
   std::string scene, output;
   SceneChoice choice;
-  std::string camera;  // index or name; empty: the scene's first
+  TimeChoice time;
+  std::optional<FrameRange> frames;  // none: a still
+  double fps = 24;                   // frames of a second
+  std::string camera;                // index or name; empty: the scene's first
   RenderOptions options;
   bool watertight = false;
   LightChoice lights = LightChoice::automatic;
@@ -42,6 +46,9 @@ void add_size_option(CLI::App& command, RenderOptions& options);
 
 /// Throws UsageError for options that do not go together.
 void check_arguments(const RenderArguments& arguments);
+
+/// The arguments of one frame of a sequence: a still at its time, in a file of its own.
+[[nodiscard]] RenderArguments frame_arguments(const RenderArguments& sequence, int frame);
 
 /// The options that decide on the pixels, defaults too, as a command line would give them.
 [[nodiscard]] std::string picture_options(const RenderArguments& arguments);

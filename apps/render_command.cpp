@@ -13,6 +13,7 @@
 #include <numbers>
 
 #include "accel/accelerated_scene.h"
+#include "accel/baking.h"
 #include "apps/exposure.h"
 #include "apps/interruption.h"
 #include "apps/peak_memory.h"
@@ -22,8 +23,9 @@
 #include "core/error.h"
 #include "core/fork_join.h"
 #include "loaders/environment_file.h"
-#include "loaders/gltf.h"
+#include "loaders/gltf_file.h"
 #include "loaders/image_decode.h"
+#include "renderer/framing.h"
 
 namespace alhazen {
 namespace {
@@ -63,22 +65,28 @@ Environment environment(const RenderArguments& arguments) {
 void set_up_lights(Scene& scene, const Camera& camera, const RenderArguments& arguments) {
   if (arguments.ambient) scene.ambient = *arguments.ambient, scene.has_ambient = true;
   if (arguments.background) scene.background = *arguments.background, scene.has_background = true;
-  if (!arguments.environment.empty()) scene.environment = environment(arguments);
+  if (arguments.environment.empty())
+    scene.environment.reset();  // the studio of the frame before
+  else if (!scene.environment)
+    scene.environment = environment(arguments);
   const bool unlit = scene.lights.empty() && !scene.has_ambient && !scene.environment;
   if (arguments.lights == LightChoice::studio) scene.lights.clear();
   if (arguments.lights == LightChoice::studio || (arguments.lights == LightChoice::automatic && unlit))
     add_studio_lights(scene, camera);
 }
 
-/// Builds the hierarchies while the textures are decoded.
+/// Builds the hierarchies while the textures are decoded, if they are not yet.
 std::unique_ptr<AcceleratedScene> build(LoadedScene& loaded, const SurfaceFilter& filter, const BuildOptions& options) {
   std::unique_ptr<AcceleratedScene> accelerated;
+  const auto build_scene = [&] {
+    accelerated = std::make_unique<AcceleratedScene>(loaded.scene.geometry, filter, options);
+  };
+  if (loaded.encoded.empty()) return build_scene(), std::move(accelerated);
   std::vector<TextureImage> images;
   {
     const ForkJoin order;
-    tbb::parallel_invoke(
-        order.task([&] { accelerated = std::make_unique<AcceleratedScene>(loaded.scene.geometry, filter, options); }),
-        order.task([&] { images = decode_images(loaded.encoded, print_warning); }));
+    tbb::parallel_invoke(order.task(build_scene),
+                         order.task([&] { images = decode_images(loaded.encoded, print_warning); }));
   }
   loaded.scene.images = std::move(images);
   loaded.encoded = {};
@@ -138,10 +146,12 @@ std::string facts_text(const std::string& outcome, const PhaseSeconds& seconds, 
          std::to_string(threads) + (threads == 1 ? " thread" : " threads");
 }
 
-std::string facts_json(const RenderArguments& arguments, bool complete, const PhaseSeconds& seconds, int threads) {
+std::string facts_json(const RenderArguments& arguments, std::optional<int> frame, bool complete,
+                       const PhaseSeconds& seconds, int threads) {
   const RayCounts rays = ray_counts(g_control);
   nlohmann::ordered_json json;
   json["event"] = complete ? "done" : "interrupted";
+  if (frame) json["frame"] = *frame;
   json["output"] = arguments.output;
   json["pixels"] = g_control.pixels_done.load();
   json["seconds"] = {
@@ -154,36 +164,75 @@ std::string facts_json(const RenderArguments& arguments, bool complete, const Ph
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-void print_facts(const RenderArguments& arguments, bool complete, const PhaseSeconds& seconds, int threads) {
+void print_facts(const RenderArguments& arguments, std::optional<int> frame, bool complete, const PhaseSeconds& seconds,
+                 int threads) {
   if (arguments.quiet) return;
-  const std::string outcome = complete ? "done"
-                                       : "interrupted, " + std::to_string(g_control.tiles_done) + " of " +
-                                             std::to_string(g_control.tiles) + " tiles saved as partial";
+  const std::string outcome = (frame ? "frame " + std::to_string(*frame) + " " : "") +
+                              (complete ? "done"
+                                        : "interrupted, " + std::to_string(g_control.tiles_done) + " of " +
+                                              std::to_string(g_control.tiles) + " tiles saved as partial");
   const bool json = arguments.progress == ProgressStyle::json;
-  std::printf(
-      "%s\n",
-      (json ? facts_json(arguments, complete, seconds, threads) : facts_text(outcome, seconds, threads)).c_str());
+  std::printf("%s\n",
+              (json ? facts_json(arguments, frame, complete, seconds, threads) : facts_text(outcome, seconds, threads))
+                  .c_str());
 }
 
-int run_render(const RenderArguments& arguments) {
-  const RenderOptions& options = arguments.options;
-  check_arguments(arguments);
-  check_writable(arguments.output, options.width, options.height);
-  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
-  PhaseSeconds seconds;
-  Stopwatch watch;
+int thread_count(const RenderOptions& options) {
+  return options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+}
 
-  LoadedScene loaded = load_gltf(arguments.scene, print_warning, arguments.choice);
-  Scene& scene = loaded.scene;
-  bake_single_instances(scene.geometry);
-  const Camera camera = pick_camera(scene, arguments.camera, double(options.width) / options.height);
+/// A view of all that is shown at any time of the animation: the same for parts of a sequence that are rendered apart.
+Camera framing_camera_of_all_times(GltfFile& file, Scene& scene, double aspect) {
+  constexpr int kTimes = 33;
+  const auto [first, last] = file.time_span();
+  const auto outline = [&, first = first, last = last](const auto& visit) {
+    for (int i = 0; i < kTimes; ++i) {
+      file.move(scene, first + (last - first) * i / (kTimes - 1));
+      visit_outline(scene.geometry, visit);
+    }
+  };
+  return framing_camera(outline, aspect);
+}
+
+/// What is read once, and shown at one time after the other.
+struct Stage {
+  GltfFile file;
+  LoadedScene loaded;
+  std::optional<Camera> framing;  // where no camera is in the file
+
+  /// At the time of the arguments; other times follow in a sequence.
+  Stage(const RenderArguments& arguments, bool sequence)
+      : file(arguments.scene, print_warning, arguments.choice, arguments.time),
+        loaded(file.load(arguments.time.time.value_or(0))) {
+    bake_single_instances(loaded.scene.geometry, file.moving_meshes());
+    if (!sequence || !loaded.scene.cameras.empty() || !arguments.camera.empty()) return;
+    const double aspect = double(arguments.options.width) / arguments.options.height;
+    framing = framing_camera_of_all_times(file, loaded.scene, aspect);
+    file.move(loaded.scene, *arguments.time.time);
+  }
+};
+
+void reset(RenderControl& control) {
+  control.tiles_done = 0, control.tiles = 0;
+  for (auto* count : {&control.pixels_done, &control.camera_rays, &control.shadow_rays, &control.mirror_rays,
+                      &control.refracted_rays, &control.dropped_samples, &control.doubts})
+    *count = 0;
+}
+
+/// The scene as it stands on the stage. `watch` runs since its loading began.
+int render_still(const RenderArguments& arguments, Stage& stage, std::optional<int> frame, Stopwatch& watch) {
+  const RenderOptions& options = arguments.options;
+  const int threads = thread_count(options);
+  Scene& scene = stage.loaded.scene;
+  PhaseSeconds seconds;
+  const double aspect = double(options.width) / options.height;
+  const Camera camera = stage.framing ? *stage.framing : pick_camera(scene, arguments.camera, aspect);
   set_up_lights(scene, camera, arguments);
   seconds.load = watch.lap();
 
   std::vector<Opacity> opacity;
   const SurfaceFilter filter = surface_filter(scene, opacity);
-  const auto accelerated = build(loaded, filter, {.threads = threads, .watertight = arguments.watertight});
+  const auto accelerated = build(stage.loaded, filter, {.threads = threads, .watertight = arguments.watertight});
   seconds.build = watch.lap();
 
   RenderResult result = render_with_progress(arguments, scene, *accelerated, camera);
@@ -197,8 +246,36 @@ int run_render(const RenderArguments& arguments) {
 
   write(arguments, result, seconds.render);
   seconds.write = watch.lap();
-  print_facts(arguments, result.complete, seconds, threads);
+  print_facts(arguments, frame, result.complete, seconds, threads);
   return caught_signal() != 0 ? 128 + caught_signal() : int(ExitStatus::done);
+}
+
+/// One frame after the other, until one is interrupted.
+int render_sequence(const RenderArguments& arguments) {
+  const FrameRange& frames = *arguments.frames;
+  Stopwatch watch;
+  const RenderArguments first = frame_arguments(arguments, frames.first);
+  check_writable(first.output, arguments.options.width, arguments.options.height);
+  Stage stage(first, true);
+  int status = int(ExitStatus::done);
+  for (int i = 0; i < frames.count() && status == int(ExitStatus::done); ++i) {
+    const RenderArguments still = frame_arguments(arguments, frames.frame(i));
+    if (i > 0) stage.file.move(stage.loaded.scene, *still.time.time);
+    reset(g_control);
+    status = render_still(still, stage, frames.frame(i), watch);
+  }
+  return status;
+}
+
+int run_render(const RenderArguments& arguments) {
+  check_arguments(arguments);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  size_t(thread_count(arguments.options)));
+  if (arguments.frames) return render_sequence(arguments);
+  check_writable(arguments.output, arguments.options.width, arguments.options.height);
+  Stopwatch watch;
+  Stage stage(arguments, false);
+  return render_still(arguments, stage, std::nullopt, watch);
 }
 
 }  // namespace
@@ -218,7 +295,9 @@ Command add_render_command(CLI::App& program) {
       "  alhazen render scene.glb -o beauty.exr --size 1920x1080 --spp 16 --transparent --half\n"
       "  alhazen render scene.glb -o ids.exr --integrator signature\n"
       "  alhazen render shoe.glb -o shoe.png --variant street --camera 1\n"
-      "  alhazen render scene.glb -o scene.png --watertight");
+      "  alhazen render scene.glb -o scene.png --watertight\n"
+      "  alhazen render fox.glb -o fox.png --animation Run --time 0.5\n"
+      "  alhazen render fox.glb -o 'run.####.exr' --animation Run --frames 0:23 --fps 24");
   return {command, [arguments] { return run_render(*arguments); }};
 }
 

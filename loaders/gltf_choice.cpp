@@ -1,5 +1,7 @@
 #include "loaders/gltf_choice.h"
 
+#include <numeric>
+
 #include "core/error.h"
 
 namespace alhazen {
@@ -33,6 +35,16 @@ std::optional<size_t> choose_variant(const GltfSource& source, const std::string
   if (wanted.empty()) return std::nullopt;
   const auto e = source.root().extension("KHR_materials_variants");
   return find("--variant", "variant", wanted, e ? e->elements("variants") : std::vector<JsonRef>{});
+}
+
+std::vector<size_t> choose_animations(const GltfSource& source, const std::string& wanted) {
+  const auto animations = source.root().elements("animations");
+  if (wanted == "none" || (wanted.empty() && animations.empty())) return {};
+  if (wanted.empty()) return {0};
+  if (wanted != "all") return {find("--animation", "animation", wanted, animations)};
+  std::vector<size_t> all(animations.size());
+  std::iota(all.begin(), all.end(), size_t{0});
+  return all;
 }
 
 }  // namespace alhazen

@@ -1,8 +1,9 @@
-// Which of a glTF file's scenes and variants is wanted.
+// Which of a glTF file's scenes, variants and animations are wanted.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "loaders/gltf_source.h"
 
@@ -15,5 +16,9 @@ namespace alhazen {
 /// The variant of KHR_materials_variants of that index or name; none for an empty text. Throws UsageError where there
 /// is no such variant.
 [[nodiscard]] std::optional<size_t> choose_variant(const GltfSource& source, const std::string& wanted);
+
+/// The animation of that index or name; "all" of them, or "none"; for an empty text the first, if there is one. Throws
+/// UsageError where there is no such animation.
+[[nodiscard]] std::vector<size_t> choose_animations(const GltfSource& source, const std::string& wanted);
 
 }  // namespace alhazen

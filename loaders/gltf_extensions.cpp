@@ -20,7 +20,7 @@ constexpr KnownExtension kKnown[] = {
     {"EXT_texture_webp", supported, ""},
     {"FB_ngon_encoding", supported, "polygon meshes"},
     {"KHR_accessor_float64", approximated, "numbers are rounded to 32 bits"},
-    {"KHR_animation_pointer", ignored, "the rest pose is seen"},
+    {"KHR_animation_pointer", supported, "what the picture shows"},
     {"KHR_audio_graph", ignored, "nothing to see"},
     {"KHR_collision_shapes", ignored, "colliders are not seen"},
     {"KHR_draco_mesh_compression", supported, ""},

@@ -9,8 +9,6 @@ namespace {
 
 // ---- Textures ----
 
-Rgb rgb(const std::vector<double>& c) { return {float(c[0]), float(c[1]), float(c[2])}; }
-
 class MaterialReader {
  public:
   MaterialReader(const GltfSource& source, GltfMaterials& all) : source_(source), all_(all) {
@@ -20,7 +18,7 @@ class MaterialReader {
   Material read(size_t i) {
     const JsonRef r = source_.at("materials", i);
     Material m;
-    read_core(source_.model.materials[i], r, m);
+    read_core(r, m);
     if (const auto e = r.extension("KHR_materials_pbrSpecularGlossiness")) read_specular_glossiness(*e, m);
     read_khronos(r, m);
     if (const auto phong = r.extension("ALHAZEN_materials_phong")) {
@@ -38,27 +36,30 @@ class MaterialReader {
     return use;
   }
 
-  void read_core(const tinygltf::Material& in, const JsonRef& r, Material& m) {
-    const tinygltf::PbrMetallicRoughness& pbr = in.pbrMetallicRoughness;
-    m.name = in.name;
-    m.alpha_mode = in.alphaMode == "MASK"    ? AlphaMode::mask
-                   : in.alphaMode == "BLEND" ? AlphaMode::blend
-                                             : AlphaMode::opaque;
-    m.alpha_cutoff = float(in.alphaCutoff);
-    m.double_sided = in.doubleSided;
-    m.base_color = {rgb(pbr.baseColorFactor), float(pbr.baseColorFactor[3])};
-    m.metallic = float(pbr.metallicFactor);
-    m.roughness = float(pbr.roughnessFactor);
-    if (const auto p = r.find("pbrMetallicRoughness")) {
-      m.base_color_texture = texture_use(*p, "baseColorTexture");
-      m.metallic_roughness_texture = texture_use(*p, "metallicRoughnessTexture");
-    }
+  void read_core(const JsonRef& r, Material& m) {
+    const auto alpha_mode = r.get("alphaMode", std::string("OPAQUE"));
+    m.name = r.get("name", std::string{});
+    m.alpha_mode = alpha_mode == "MASK"    ? AlphaMode::mask
+                   : alpha_mode == "BLEND" ? AlphaMode::blend
+                                           : AlphaMode::opaque;
+    m.alpha_cutoff = r.get("alphaCutoff", 0.5f);
+    m.double_sided = r.get("doubleSided", false);
+    if (const auto p = r.find("pbrMetallicRoughness")) read_metallic_roughness(*p, m);
     m.normal_texture = texture_use(r, "normalTexture");
-    m.normal_scale = float(in.normalTexture.scale);
+    if (const auto t = r.find("normalTexture")) m.normal_scale = t->get("scale", 1.0f);
     m.occlusion_texture = texture_use(r, "occlusionTexture");
-    m.occlusion_strength = float(in.occlusionTexture.strength);
-    m.emissive = rgb(in.emissiveFactor);
+    if (const auto t = r.find("occlusionTexture")) m.occlusion_strength = t->get("strength", 1.0f);
+    m.emissive = r.get("emissiveFactor", Rgb{0.0f});
     m.emissive_texture = texture_use(r, "emissiveTexture");
+  }
+
+  void read_metallic_roughness(const JsonRef& r, Material& m) {
+    const auto color = r.get("baseColorFactor", std::array{1.0f, 1.0f, 1.0f, 1.0f});
+    m.base_color = {{color[0], color[1], color[2]}, color[3]};
+    m.metallic = r.get("metallicFactor", 1.0f);
+    m.roughness = r.get("roughnessFactor", 1.0f);
+    m.base_color_texture = texture_use(r, "baseColorTexture");
+    m.metallic_roughness_texture = texture_use(r, "metallicRoughnessTexture");
   }
 
   void read_khronos(const JsonRef& r, Material& m) {

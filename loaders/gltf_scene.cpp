@@ -1,35 +1,13 @@
 #include "loaders/gltf_scene.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "loaders/gltf_instancing.h"
-#include "loaders/gltf_transform.h"
 
 namespace alhazen {
 namespace {
-
-// ---- Maps ----
-
-Affine3d parent_from_node(const tinygltf::Node& node, const JsonRef& r) {
-  if (!node.matrix.empty()) {
-    const std::vector<double>& m = node.matrix;
-    const double w = m[15];
-    if (m[3] != 0 || m[7] != 0 || m[11] != 0 || w != 1) r["matrix"].expected("0, 0, 0, 1 as the matrix's last row");
-    return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
-  }
-  const auto vec3 = [](const std::vector<double>& v, const Vec3d& otherwise) {
-    return v.empty() ? otherwise : Vec3d{v[0], v[1], v[2]};
-  };
-  std::array<double, 4> q{0, 0, 0, 1};
-  if (!node.rotation.empty()) q = {node.rotation[0], node.rotation[1], node.rotation[2], node.rotation[3]};
-  if (q == std::array<double, 4>{}) r["rotation"].expected("a unit quaternion");
-  Affine3d map = rotate_scale(q, vec3(node.scale, {1, 1, 1}));
-  map.origin = vec3(node.translation, {0, 0, 0});
-  return map;
-}
 
 /// The map's position and rotation, without scale and shear: z keeps its direction, y stays as near to its own as it
 /// can. None where the two do not span a plane.
@@ -41,14 +19,14 @@ std::optional<Affine3d> rigid(const Affine3d& m) {
 
 // ---- Cameras and lights ----
 
-Camera read_camera(const tinygltf::Camera& in) {
+Camera read_camera(const JsonRef& r) {
   Camera camera;
-  camera.name = in.name;
-  if (in.type == "perspective") {
-    camera.yfov = in.perspective.yfov;
+  camera.name = r.get("name", std::string{});
+  if (r["type"].as<std::string>() == "perspective") {
+    camera.yfov = r["perspective"]["yfov"].as<double>();
   } else {
     camera.kind = Camera::Kind::orthographic;
-    camera.ymag = std::abs(in.orthographic.ymag);
+    camera.ymag = std::abs(r["orthographic"]["ymag"].as<double>());
   }
   return camera;
 }
@@ -64,100 +42,22 @@ Light read_light(const JsonRef& r) {
   if (const auto spot = r.find("spot")) {
     light.cos_inner = float(std::cos(spot->get("innerConeAngle", 0.0)));
     light.cos_outer = float(std::cos(spot->get("outerConeAngle", std::numbers::pi / 4)));
+    light.cos_inner = std::max(light.cos_inner, light.cos_outer);  // animated, one may overtake the other
   }
   if (const auto e = r.extension("ALHAZEN_lights"))
     light.attenuated = e->get("attenuation", std::string("inverse-square")) != "none";
   return light;
 }
 
-// ---- Nodes ----
-
-/// Who is whose child. Every node has one parent at most and none is its own ancestor.
-struct Forest {
-  std::vector<uint32_t> parent;  // kNone: a root
-  const std::vector<tinygltf::Node>& nodes;
-
-  /// `roots` and all below, each after its parent.
-  [[nodiscard]] std::vector<uint32_t> below(const std::vector<uint32_t>& roots) const {
-    std::vector<uint32_t> order = roots;
-    for (size_t i = 0; i < order.size(); ++i)
-      for (const int child : nodes[order[i]].children) order.push_back(uint32_t(child));
-    return order;
-  }
-  [[nodiscard]] std::vector<uint32_t> roots() const {
-    std::vector<uint32_t> all;
-    for (uint32_t i = 0; i < parent.size(); ++i)
-      if (parent[i] == kNone) all.push_back(i);
-    return all;
-  }
-};
-
-Forest read_forest(const GltfSource& source) {
-  const std::vector<tinygltf::Node>& nodes = source.model.nodes;
-  Forest forest{std::vector<uint32_t>(nodes.size(), kNone), nodes};
-  for (uint32_t i = 0; i < nodes.size(); ++i)
-    for (size_t k = 0; k < nodes[i].children.size(); ++k) {
-      const auto child = size_t(nodes[i].children[k]);
-      if (forest.parent[child] != kNone)
-        source.at("nodes", i)["children"][k].fail("node " + std::to_string(child) + " is a child of node " +
-                                                  std::to_string(forest.parent[child]) + " already");
-      forest.parent[child] = i;
-    }
-  // With one parent at most for each, what no root reaches lies on or under a cycle.
-  std::vector<char> reached(nodes.size());
-  for (const uint32_t i : forest.below(forest.roots())) reached[i] = 1;
-  for (uint32_t i = 0; i < nodes.size(); ++i)
-    if (!reached[i]) source.at("nodes", i).fail("is its own ancestor, or below one that is");
-  return forest;
-}
-
-std::vector<Affine3d> world_from_nodes(const GltfSource& source, const Forest& forest) {
-  std::vector<Affine3d> world(forest.nodes.size());
-  for (const uint32_t i : forest.below(forest.roots())) {
-    const Affine3d local = parent_from_node(forest.nodes[i], source.at("nodes", i));
-    world[i] = forest.parent[i] == kNone ? local : world[forest.parent[i]] * local;
-  }
-  return world;
-}
-
-/// The roots of the scene to show.
-std::vector<uint32_t> shown_roots(const GltfSource& source, const Forest& forest, std::optional<size_t> chosen) {
-  if (!chosen) return forest.roots();
-  std::vector<uint32_t> roots;
-  std::vector<char> listed(forest.nodes.size());
-  const std::vector<int>& nodes = source.model.scenes[*chosen].nodes;
-  for (size_t i = 0; i < nodes.size(); ++i) {
-    const auto n = uint32_t(nodes[i]);
-    const auto fail = [&](const char* why) {
-      source.at("scenes", *chosen)["nodes"][i].fail("node " + std::to_string(n) + why);
-    };
-    if (forest.parent[n] != kNone) fail(" is no root but a child of another node");
-    if (listed[n]) fail(" is listed twice");
-    listed[n] = 1;
-    roots.push_back(n);
-  }
-  return roots;
-}
-
-/// Which nodes are not seen, by themselves or below one that is not.
-std::vector<char> hidden_nodes(const GltfSource& source, const Forest& forest) {
-  std::vector<char> hidden(forest.nodes.size());
-  for (uint32_t i = 0; i < hidden.size(); ++i) {
-    const JsonRef r = source.at("nodes", i);
-    if (const auto e = r.extension("KHR_node_visibility")) hidden[i] |= char(!e->get("visible", true));
-    if (const auto e = r.extension("MSFT_lod"))  // the node itself is the finest level
-      for (const JsonRef& coarser : e->elements("ids")) hidden[coarser.as<size_t>()] = 1;
-  }
-  for (const uint32_t i : forest.below(forest.roots()))
-    if (forest.parent[i] != kNone) hidden[i] |= hidden[forest.parent[i]];
-  return hidden;
-}
-
 /// Puts into the scene what one node brings.
 class Placer {
  public:
-  Placer(GltfSource& source, const GltfBuffers& buffers, Scene& scene)
-      : source_(source), buffers_(buffers), scene_(scene), instances_left_(kMostInstances + buffers.bytes() / 8) {
+  Placer(GltfSource& source, const GltfBuffers& buffers, const DeformationPlan& deformations, Scene& scene)
+      : source_(source),
+        buffers_(buffers),
+        deformations_(deformations),
+        scene_(scene),
+        instances_left_(kMostInstances + buffers.bytes() / 8) {
     if (const auto e = source.root().extension("KHR_lights_punctual"))
       for (const JsonRef& r : e->elements("lights")) lights_.push_back(read_light(r));
   }
@@ -168,7 +68,7 @@ class Placer {
     if (!is_finite(world_from_node)) r.fail("its global matrix overflows");
     if (in.camera >= 0) place_camera(r, uint32_t(in.camera), world_from_node);
     if (hidden) return;
-    if (in.mesh >= 0) place_mesh(r, uint32_t(in.mesh), node, world_from_node);
+    if (in.mesh >= 0) place_mesh(r, deformations_.mesh_of_node[node], node, world_from_node);
     if (const auto e = r.extension("KHR_lights_punctual"))
       place_light(r, (*e)["light"].as<uint32_t>(), world_from_node);
     if (const auto e = r.extension("ALHAZEN_shapes")) place_shape(r, *e, node, world_from_node);
@@ -176,6 +76,7 @@ class Placer {
 
  private:
   void place_mesh(const JsonRef& r, uint32_t mesh, uint32_t node, const Affine3d& world_from_node) {
+    if (deformations_.in_world[node]) return void(scene_.geometry.mesh_instances.push_back({mesh, node, {}}));
     if (const auto e = r.extension("EXT_mesh_gpu_instancing")) return place_instances(*e, mesh, node, world_from_node);
     if (is_invertible(world_from_node))
       scene_.geometry.mesh_instances.push_back({mesh, node, world_from_node});
@@ -214,7 +115,7 @@ class Placer {
   }
 
   void place_camera(const JsonRef& r, uint32_t index, const Affine3d& world_from_node) {
-    Camera camera = read_camera(source_.model.cameras[index]);
+    Camera camera = read_camera(source_.at("cameras", index));
     camera.world_from_camera = without_scale(r, world_from_node);
     scene_.cameras.push_back(std::move(camera));
     scene_.camera_index.push_back(index);
@@ -238,6 +139,7 @@ class Placer {
 
   GltfSource& source_;
   const GltfBuffers& buffers_;
+  const DeformationPlan& deformations_;
   Scene& scene_;
   uint64_t instances_left_;
   std::vector<Light> lights_;
@@ -252,18 +154,13 @@ void read_surroundings(const JsonRef& e, Scene& scene) {
 
 }  // namespace
 
-void read_scene(GltfSource& source, const GltfBuffers& buffers, std::optional<size_t> chosen, Scene& scene) {
-  for (const tinygltf::Node& node : source.model.nodes) scene.node_names.push_back(node.name);
-  const Forest forest = read_forest(source);
-  scene.geometry.parent_of_node = forest.parent;
-  const std::vector<Affine3d> world = world_from_nodes(source, forest);
-  const std::vector<char> hidden = hidden_nodes(source, forest);
-  std::vector<uint32_t> shown = forest.below(shown_roots(source, forest, chosen));
-  std::sort(shown.begin(), shown.end());  // instances, cameras and lights come in the order of their nodes
-  Placer placer(source, buffers, scene);
-  for (const uint32_t node : shown) placer.place(node, world[node], hidden[node]);
-  if (chosen)
-    if (const auto e = source.at("scenes", *chosen).extension("ALHAZEN_lights")) read_surroundings(*e, scene);
+void read_scene(GltfSource& source, const GltfBuffers& buffers, const PosedNodes& nodes, Scene& scene) {
+  scene.geometry.parent_of_node = nodes.forest.parent;
+  const std::vector<char> hidden = hidden_nodes(source, nodes.forest);
+  Placer placer(source, buffers, nodes.deformations, scene);
+  for (const uint32_t node : nodes.shown) placer.place(node, nodes.world_from_node[node], hidden[node]);
+  if (nodes.scene)
+    if (const auto e = source.at("scenes", *nodes.scene).extension("ALHAZEN_lights")) read_surroundings(*e, scene);
 }
 
 }  // namespace alhazen

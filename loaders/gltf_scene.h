@@ -2,16 +2,25 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
-#include "loaders/gltf_accessor.h"
+#include "loaders/gltf_deformation.h"
 
 namespace alhazen {
 
-/// Fills what nodes bring to a scene whose materials, meshes and shapes are there already: instances, cameras, lights,
-/// names, ambient light and background. Shown is what hangs from the scene `chosen`, or from all roots where
-/// there is none, less what KHR_node_visibility hides and MSFT_lod's lesser levels; hidden cameras are there all the
-/// same. Throws LoadError for a node graph that is no forest, scene nodes that are no roots, matrices that are not
-/// affine, and shapes placed by a matrix that cannot be inverted.
-void read_scene(GltfSource& source, const GltfBuffers& buffers, std::optional<size_t> chosen, Scene& scene);
+/// The nodes as they stand at one time.
+struct PosedNodes {
+  std::optional<size_t> scene;  // that is shown
+  const Forest& forest;
+  std::span<const uint32_t> shown;  // the scene's, see `scene_nodes`
+  std::span<const Affine3d> world_from_node;
+  const DeformationPlan& deformations;
+};
+
+/// Adds what nodes bring to a scene whose materials, meshes and shapes are there already: instances, cameras, lights,
+/// ambient light and background. Shown are `shown`, less what KHR_node_visibility hides and MSFT_lod's lesser levels;
+/// hidden cameras are there all the same. Throws LoadError for shapes placed by a matrix that cannot be inverted, and
+/// where instances unfold to too many.
+void read_scene(GltfSource& source, const GltfBuffers& buffers, const PosedNodes& nodes, Scene& scene);
 
 }  // namespace alhazen

@@ -243,8 +243,29 @@ Check node() {
                  {"rotation", numbers(4)},
                  {"scale", numbers(3)},
                  {"mesh", index_into("/meshes")},
+                 {"skin", index_into("/skins")},
+                 {"weights", list_of(number())},
                  {"camera", index_into("/cameras")},
                  {"extensions", extensions}});
+}
+
+Check skin() {
+  return object({{"name", text()},
+                 {"joints", list_of(index_into("/nodes"), 1), required},
+                 {"inverseBindMatrices", index_into("/accessors")},
+                 {"skeleton", index_into("/nodes")}});
+}
+
+Check animation() {
+  const Check pointer = object({{"pointer", text(), required}});
+  const Check target = object({{"node", index_into("/nodes")},
+                               {"path", text(), required},
+                               {"extensions", object({{"KHR_animation_pointer", pointer}})}});
+  const Check channel = object({{"sampler", integer(), required}, {"target", target, required}});
+  const Check sampler = object({{"input", index_into("/accessors"), required},
+                                {"output", index_into("/accessors"), required},
+                                {"interpolation", one_of(std::vector<std::string>{"LINEAR", "STEP", "CUBICSPLINE"})}});
+  return object({{"name", text()}, {"channels", list_of(channel), required}, {"samplers", list_of(sampler), required}});
 }
 
 Check scene() {
@@ -272,6 +293,8 @@ Check gltf() {
                  {"meshes", list_of(mesh())},
                  {"cameras", list_of(camera())},
                  {"nodes", list_of(node())},
+                 {"skins", list_of(skin())},
+                 {"animations", list_of(animation())},
                  {"scenes", list_of(scene())},
                  {"scene", index_into("/scenes")},
                  {"extensions", extensions}});

@@ -3,6 +3,7 @@
 #include <limits>
 #include <numbers>
 
+#include "renderer/framing.h"
 #include "renderer/render.h"
 
 namespace alhazen {
@@ -18,7 +19,7 @@ Affine3d look_along(const Vec3d& eye, const Vec3d& forward) {
 
 }  // namespace
 
-Camera framing_camera(const Geometry& geometry, double aspect) {
+Camera framing_camera(const Outline& outline, double aspect) {
   Camera camera;
   camera.name = "framing";
   camera.yfov = 35 * std::numbers::pi / 180;
@@ -29,7 +30,7 @@ Camera framing_camera(const Geometry& geometry, double aspect) {
   // axes: right of one where p.x + p.z tan_x <= c.x + c.z tan_x, and so on. The sides rest on the points.
   constexpr double kNowhere = -std::numeric_limits<double>::infinity();
   double right = kNowhere, left = kNowhere, top = kNowhere, bottom = kNowhere, front = kNowhere;
-  visit_outline(geometry, [&](const Vec3d& p_world) {
+  outline([&](const Vec3d& p_world) {
     const Vec3d p{dot(p_world, m.x), dot(p_world, m.y), dot(p_world, m.z)};
     right = std::max(right, p.z * tan_x + p.x), left = std::max(left, p.z * tan_x - p.x);
     top = std::max(top, p.z * tan_y + p.y), bottom = std::max(bottom, p.z * tan_y - p.y);
@@ -41,6 +42,10 @@ Camera framing_camera(const Geometry& geometry, double aspect) {
   if (!(z > front)) z = front + 1;  // a point, or a line along the view: any distance does
   camera.world_from_camera.origin = m.x * x + m.y * y + m.z * z;
   return camera;
+}
+
+Camera framing_camera(const Geometry& geometry, double aspect) {
+  return framing_camera([&](const auto& visit) { visit_outline(geometry, visit); }, aspect);
 }
 
 void add_studio_lights(Scene& scene, const Camera& camera) {

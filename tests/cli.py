@@ -1,8 +1,10 @@
 """The program as other programs and people at a terminal meet it: cli.py PROGRAM SHOWCASE"""
+import base64
 import json
 import os
 import pty
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -97,6 +99,52 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(info["extensions"], [{"name": "X_unheard", "required": False, "treatment": "ignored",
                                                "meaning": "not known, what it brings is left out"}])
         self.assertEqual((info["nodes"], info["bounds"], info["cameras"]), (0, None, []))
+
+    def moving_triangle(self):
+        """A triangle that crosses the view within a second, before one that stands, and a camera."""
+        numbers = struct.pack("<9f2f6f", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, -2, 0, 0, 2, 0, 0)
+        views = [{"buffer": 0, "byteOffset": at, "byteLength": n} for at, n in ((0, 36), (36, 8), (44, 24))]
+        accessors = [{"bufferView": i, "componentType": 5126, "type": t, "count": n}
+                     for i, (t, n) in enumerate((("VEC3", 3), ("SCALAR", 2), ("VEC3", 2)))]
+        uri = "data:application/octet-stream;base64," + base64.b64encode(numbers).decode()
+        scene = {"asset": {"version": "2.0"}, "buffers": [{"byteLength": len(numbers), "uri": uri}],
+                 "bufferViews": views, "accessors": accessors,
+                 "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}] * 2,
+                 "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}],
+                 "nodes": [{"mesh": 0}, {"mesh": 1, "translation": [0, 0, -1]}, {"camera": 0, "translation": [0, 0, 5]}],
+                 "animations": [{"name": "cross", "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+                                 "samplers": [{"input": 1, "output": 2}]}]}
+        with open(self.file("moving.gltf"), "w", encoding="utf-8") as file:
+            json.dump(scene, file)
+        return self.file("moving.gltf")
+
+    def test_frames_of_a_sequence_are_the_stills_at_their_times(self):
+        scene = self.moving_triangle()
+        options = ["--size", "48x32", "--quiet"]
+        date = {"SOURCE_DATE_EPOCH": "1700000000"}
+        result = run("render", scene, "-o", self.file("f.##.png"), "--frames", "0:8:2", "--fps", "8", *options, **date)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        frames = set()
+        for n in range(0, 9, 2):
+            run("render", scene, "-o", self.file("still.png"), "--time", str(n / 8), *options, **date)
+            with open(self.file("still.png"), "rb") as still, open(self.file(f"f.0{n}.png"), "rb") as frame:
+                frames.add(frame.read())
+                frame.seek(0)
+                self.assertEqual(still.read(), frame.read())
+        self.assertEqual(len(frames), 5)
+        info = json.loads(run("info", scene, "--json").stdout)
+        self.assertEqual((info["animations"], info["skins"]), (["cross"], 0))
+
+    def test_frames_ask_for_what_they_need(self):
+        scene = self.moving_triangle()
+        for options, expected in ((["-o", "f.png", "--frames", "1:3"], "no place for the number"),
+                                  (["-o", "f.#.png", "--frames", "1:3:-1"], "is not FIRST:LAST"),
+                                  (["-o", "f.#.png", "--frames", "one"], "is not FIRST:LAST"),
+                                  (["-o", "f.#.png", "--frames", "1:3", "--time", "1"], "times of their own"),
+                                  (["-o", self.file("f.png"), "--animation", "walk"], "the file has 0 'cross'")):
+            result = run("render", scene, *options)
+            self.assertEqual(result.returncode, 2, options)
+            self.assertIn(expected, result.stderr)
 
     def test_misspelled_words_bring_the_nearest(self):
         for arguments, expected in (

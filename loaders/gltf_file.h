@@ -1,0 +1,51 @@
+// A glTF file read once, whose scene can be seen at any time of its animations.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "loaders/gltf.h"
+
+namespace alhazen {
+
+/// Which of a file's animations is played, and when.
+struct TimeChoice {
+  std::string animation{};       // a name, an index, "all", or "none": the rest pose; empty: see `time`
+  std::optional<double> time{};  // seconds; none: 0, and of no animation but one that is named. Else of the first
+};
+
+class GltfFile {
+ public:
+  /// Reads and checks the file; of its animations, what the chosen ones hold. Throws LoadError naming file, JSON
+  /// pointer, what was found and what was expected; UsageError for a choice that the file does not have.
+  GltfFile(const std::filesystem::path& file, const WarningSink& warn, const SceneChoice& choice = {},
+           const TimeChoice& time = {});
+  ~GltfFile();
+  GltfFile(const GltfFile&) = delete;
+  GltfFile& operator=(const GltfFile&) = delete;
+
+  /// The scene at that time. Before the first key of an animated property it is as at that key, after the last as at
+  /// the last. Throws LoadError as the constructor does.
+  [[nodiscard]] LoadedScene load(double seconds);
+
+  /// Takes a scene that load() gave, and whose meshes that do not move may have been baked, to another time. Lights,
+  /// cameras, ambient light and background are the file's again; what does not move stays as it is.
+  void move(Scene& scene, double seconds);
+
+  /// By mesh of the loaded scene, whether the animations change it or a node that shows it.
+  [[nodiscard]] std::span<const char> moving_meshes() const;
+
+  /// Seconds from the first key of what is animated to the last; 0 and 0 where nothing is.
+  [[nodiscard]] std::pair<double, double> time_span() const;
+
+  [[nodiscard]] std::vector<std::string> animation_names() const;
+  [[nodiscard]] size_t skin_count() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace alhazen
