@@ -12,6 +12,7 @@
 #include "apps/crosscheck_map.h"
 #include "apps/crosscheck_target.h"
 #include "apps/interruption.h"
+#include "apps/limit_options.h"
 #include "apps/render_arguments.h"
 #include "core/error.h"
 #include "crosscheck/extra_report.h"
@@ -236,6 +237,8 @@ Command add_crosscheck_command(CLI::App& program) {
       ->type_name("X")
       ->check(CLI::NonNegativeNumber.description(""))
       ->capture_default_str();
+  command->option_defaults()->group("Limits");
+  add_limit_options(*command, arguments->limits);
   command->footer(
       "Exit status: 0 no custom intersector is wrong, 5 some are; 2 wrong usage, 3 bad scene or library,\n"
       "4 cannot write, 130 or 143 interrupted, 1 other.\n"

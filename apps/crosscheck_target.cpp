@@ -100,7 +100,8 @@ CrosscheckTarget scene_target(const CrosscheckArguments& arguments) {
   target.source = " " + shell_word(arguments.scene);
   if (!arguments.choice.scene.empty()) target.source += " --scene " + shell_word(arguments.choice.scene);
   const auto warn = [](const std::string& text) { std::fprintf(stderr, "warning: %s\n", text.c_str()); };
-  target.scene = std::make_unique<Scene>(load_gltf(arguments.scene, warn, arguments.choice).scene);
+  target.scene = std::make_unique<Scene>(
+      load_gltf(arguments.scene, warn, arguments.choice, std::make_shared<LoadBudget>(arguments.limits)).scene);
   const auto& materials = target.scene->materials;
   const auto is_cut = [](const Material& m) { return m.alpha_mode == AlphaMode::mask; };
   if (const auto cut = std::count_if(materials.begin(), materials.end(), is_cut))

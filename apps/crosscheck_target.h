@@ -15,6 +15,7 @@ namespace alhazen {
 struct CrosscheckArguments {
   std::string scene;  // a file
   SceneChoice choice;
+  LoadLimits limits;
   std::string shape = "all", population = "all", camera, json, map, intersector;
   std::vector<std::string> cases;  // files
   bool shrink = false;             // B's errors, too

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "apps/limit_options.h"
 #include "core/error.h"
 #include "loaders/gltf_file.h"
 
@@ -84,8 +85,8 @@ Json extensions_json(const LoadedScene& loaded) {
   return extensions;
 }
 
-Json info_json(const std::string& name, const WarningSink& warn) {
-  GltfFile file(name, warn);
+Json info_json(const std::string& name, const WarningSink& warn, const std::shared_ptr<LoadBudget>& budget) {
+  GltfFile file(name, warn, {}, {}, budget);
   const LoadedScene loaded = file.load(0);
   Json info{{"file", name}};
   info.update(counts_json(loaded));
@@ -169,9 +170,9 @@ std::string info_text(const Json& info) {
          row("bounds", bounds_text(info["bounds"])) + rows("extensions", info["extensions"], extension_text);
 }
 
-int run_info(const std::string& file, bool as_json) {
+int run_info(const std::string& file, const LoadLimits& limits, bool as_json) {
   const auto warn = [](const std::string& text) { std::fprintf(stderr, "warning: %s\n", text.c_str()); };
-  const Json info = info_json(file, warn);
+  const Json info = info_json(file, warn, std::make_shared<LoadBudget>(limits));
   const std::string text = as_json ? info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : info_text(info);
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
     throw WriteError("standard output", "cannot be written");
@@ -183,14 +184,17 @@ int run_info(const std::string& file, bool as_json) {
 Command add_info_command(CLI::App& program) {
   struct Arguments {
     std::string scene;
+    LoadLimits limits;
     bool json = false;
   };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = program.add_subcommand("info", "Say what a scene holds")->group("Commands");
   command->add_option("SCENE", arguments->scene, "glTF 2.0 file (.gltf or .glb)")->type_name("")->required();
   command->add_flag("--json", arguments->json, "One JSON object instead of a table");
+  command->option_defaults()->group("Limits");
+  add_limit_options(*command, arguments->limits);
   command->footer("Example:\n  alhazen info scene.gltf --json");
-  return {command, [arguments] { return run_info(arguments->scene, arguments->json); }};
+  return {command, [arguments] { return run_info(arguments->scene, arguments->limits, arguments->json); }};
 }
 
 }  // namespace alhazen

@@ -10,6 +10,7 @@
 #include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <stop_token>
@@ -23,6 +24,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kEraseLine = "\r\033[K";
+constexpr double kLoadingWorthMention = 1;  // seconds
 
 template <class... T>
 std::string format(const char* pattern, T... values) {
@@ -35,6 +37,11 @@ std::string format(const char* pattern, T... values) {
 void offer(int fd, const std::string& text) {
   pollfd ready{fd, POLLOUT, 0};
   if (poll(&ready, 1, 0) == 1 && (ready.revents & POLLOUT)) (void)!::write(fd, text.data(), text.size());
+}
+
+Progress progress_of(const RenderControl& control, uint64_t pixels, double seconds) {
+  return {control.tiles_done, control.tiles, double(control.pixels_done) / double(pixels), ray_counts(control).all(),
+          seconds};
 }
 
 size_t terminal_columns() {
@@ -82,29 +89,41 @@ std::string progress_json(const Progress& p) {
   return json.dump();
 }
 
+std::string progress_text(const std::string& title, const LoadProgress& p, double seconds) {
+  const uint64_t done = p.done, all = p.all;
+  const std::string count = all > 0 ? " " + std::to_string(std::min(done, all)) + "/" + std::to_string(all) : "";
+  return title + "  " + p.phase.load() + count + "  " + duration_text(seconds) + " elapsed";
+}
+
+std::string progress_json(const LoadProgress& p, double seconds) {
+  nlohmann::ordered_json json;
+  json["event"] = "loading";
+  json["phase"] = p.phase.load();
+  json["done"] = p.done.load();
+  json["all"] = p.all.load();
+  json["seconds"] = seconds;
+  return json.dump();
+}
+
 double report_interval(ProgressStyle style, double elapsed) {
   if (style == ProgressStyle::plain) return std::clamp(elapsed / 10, 10.0, 600.0);
   return std::clamp(elapsed / 20, 0.2, 5.0);
 }
 
 struct ProgressReporter::Impl {
+  using Say = std::function<std::string(double seconds)>;
+
   ProgressStyle style;
-  std::string title;
-  uint64_t pixels;
-  const RenderControl& control;
+  double first_after;  // seconds
+  Say say_text, say_json;
   Clock::time_point start = Clock::now();
-  std::jthread thread;
+  std::jthread thread{};
 
   [[nodiscard]] double elapsed() const { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-  [[nodiscard]] Progress progress() const {
-    return {control.tiles_done, control.tiles, double(control.pixels_done) / double(pixels), ray_counts(control).all(),
-            elapsed()};
-  }
-
   void report() const {
-    if (style == ProgressStyle::json) return offer(STDOUT_FILENO, progress_json(progress()) + "\n");
-    const std::string text = progress_text(title, progress());
+    if (style == ProgressStyle::json) return offer(STDOUT_FILENO, say_json(elapsed()) + "\n");
+    const std::string text = say_text(elapsed());
     if (style == ProgressStyle::plain) return offer(STDERR_FILENO, text + "\n");
     offer(STDERR_FILENO, kEraseLine + text.substr(0, terminal_columns() - 1));
   }
@@ -114,7 +133,8 @@ struct ProgressReporter::Impl {
     std::condition_variable_any wake;
     std::unique_lock lock(mutex);
     const auto wait = [&] {
-      const std::chrono::duration<double> interval(report_interval(style, elapsed()));
+      const double wanted = report_interval(style, elapsed());
+      const std::chrono::duration<double> interval(elapsed() < first_after ? std::max(wanted, first_after) : wanted);
       wake.wait_for(lock, stop, interval, [] { return false; });
       return !stop.stop_requested();
     };
@@ -125,9 +145,22 @@ struct ProgressReporter::Impl {
 
 ProgressReporter::ProgressReporter(ProgressStyle style, std::string title, uint64_t pixels,
                                    const RenderControl& control)
-    : impl_(new Impl{resolve(style), std::move(title), pixels, control, Clock::now(), {}}) {
+    : ProgressReporter(
+          new Impl{resolve(style), 0,
+                   [=, &control, title = std::move(title)](double seconds) {
+                     return progress_text(title, progress_of(control, pixels, seconds));
+                   },
+                   [=, &control](double seconds) { return progress_json(progress_of(control, pixels, seconds)); }}) {}
+
+ProgressReporter::ProgressReporter(ProgressStyle style, std::string title, const LoadProgress& progress)
+    : ProgressReporter(new Impl{
+          resolve(style), kLoadingWorthMention,
+          [&progress, title = std::move(title)](double seconds) { return progress_text(title, progress, seconds); },
+          [&progress](double seconds) { return progress_json(progress, seconds); }}) {}
+
+ProgressReporter::ProgressReporter(Impl* impl) : impl_(impl) {
   if (impl_->style == ProgressStyle::none) return;
-  impl_->thread = std::jthread([impl = impl_.get()](const std::stop_token& stop) { impl->run(stop); });
+  impl_->thread = std::jthread([impl](const std::stop_token& stop) { impl->run(stop); });
 }
 
 ProgressReporter::~ProgressReporter() = default;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "loaders/load_limits.h"
 #include "renderer/render.h"
 
 namespace alhazen {
@@ -45,23 +46,34 @@ struct Progress {
 /// {"event": "progress", ...}; docs/rendering.md lists the keys.
 [[nodiscard]] std::string progress_json(const Progress& progress);
 
+/// "showcase  images 12/48  2.1 s elapsed"
+[[nodiscard]] std::string progress_text(const std::string& title, const LoadProgress& progress, double seconds);
+
+/// {"event": "loading", ...}
+[[nodiscard]] std::string progress_json(const LoadProgress& progress, double seconds);
+
 /// "4.1 s", "2:05", "1:02:05"
 [[nodiscard]] std::string duration_text(double seconds);
 
 /// Seconds from one report to the next after `elapsed` seconds: reports come more slowly as a render gets long.
 [[nodiscard]] double report_interval(ProgressStyle style, double elapsed);
 
-/// Reports on a render from its own thread for as long as it lives, and never waits for a slow reader.
+/// Reports on a render, or on loading that takes longer than a second, from its own thread for as long as it lives, and
+/// never waits for a slow reader.
 class ProgressReporter {
  public:
   /// `control` must outlive it; `pixels` is the picture's count of pixels.
   ProgressReporter(ProgressStyle style, std::string title, uint64_t pixels, const RenderControl& control);
+  /// `progress` must outlive it.
+  ProgressReporter(ProgressStyle style, std::string title, const LoadProgress& progress);
   ~ProgressReporter();
   ProgressReporter(const ProgressReporter&) = delete;
   ProgressReporter& operator=(const ProgressReporter&) = delete;
 
  private:
   struct Impl;
+  explicit ProgressReporter(Impl* impl);  // owned
+
   std::unique_ptr<Impl> impl_;
 };
 

@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstdio>
 
+#include "apps/limit_options.h"
 #include "apps/usage.h"
 
 namespace alhazen {
@@ -201,6 +202,7 @@ void add_render_options(CLI::App& command, RenderArguments& arguments) {
   group("Picture"), add_picture_options(command, arguments);
   group("Light"), add_light_options(command, arguments);
   group("Run"), add_run_options(command, arguments);
+  group("Limits"), add_limit_options(command, arguments.limits);
 }
 
 void check_arguments(const RenderArguments& arguments) {

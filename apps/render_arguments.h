@@ -20,6 +20,7 @@ enum class LightChoice : uint8_t { automatic, scene, studio };
 struct RenderArguments {
   std::string scene, output;
   SceneChoice choice;
+  LoadLimits limits;
   TimeChoice time;
   std::optional<FrameRange> frames;  // none: a still
   double fps = 24;                   // frames of a second

@@ -85,22 +85,27 @@ std::unique_ptr<AcceleratedScene> build(LoadedScene& loaded, const SurfaceFilter
   std::vector<TextureImage> images;
   {
     const ForkJoin order;
-    tbb::parallel_invoke(order.task(build_scene),
-                         order.task([&] { images = decode_images(loaded.encoded, print_warning); }));
+    tbb::parallel_invoke(order.task(build_scene), order.task([&] {
+      images = decode_images(std::move(loaded.encoded), print_warning, *loaded.budget);
+    }));
   }
   loaded.scene.images = std::move(images);
-  loaded.encoded = {};
   return accelerated;
 }
+
+ProgressStyle style_of(const RenderArguments& arguments) {
+  return arguments.quiet ? ProgressStyle::none : arguments.progress;
+}
+
+std::string title_of(const std::string& scene) { return std::filesystem::path(scene).stem().string(); }
 
 RenderResult render_with_progress(const RenderArguments& arguments, const Scene& scene,
                                   const AcceleratedScene& accelerated, const Camera& camera) {
   const RenderOptions& options = arguments.options;
-  const std::string title = std::filesystem::path(arguments.scene).stem().string() + " " +
-                            std::to_string(options.width) + "x" + std::to_string(options.height) + " " +
-                            std::to_string(options.samples) + " spp";
-  const ProgressReporter reporter(arguments.quiet ? ProgressStyle::none : arguments.progress, title,
-                                  uint64_t(options.width) * uint64_t(options.height), g_control);
+  const std::string title = title_of(arguments.scene) + " " + std::to_string(options.width) + "x" +
+                            std::to_string(options.height) + " " + std::to_string(options.samples) + " spp";
+  const ProgressReporter reporter(style_of(arguments), title, uint64_t(options.width) * uint64_t(options.height),
+                                  g_control);
   stop_on_signal(g_control.stop);
   return render(scene, accelerated, camera, options, g_control);
 }
@@ -196,13 +201,17 @@ Camera framing_camera_of_all_times(GltfFile& file, Scene& scene, double aspect) 
 
 /// What is read once, and shown at one time after the other.
 struct Stage {
+  std::shared_ptr<LoadBudget> budget;
+  std::unique_ptr<ProgressReporter> loading;  // until the first frame's scene is built
   GltfFile file;
   LoadedScene loaded;
   std::optional<Camera> framing;  // where no camera is in the file
 
   /// At the time of the arguments; other times follow in a sequence.
   Stage(const RenderArguments& arguments, bool sequence)
-      : file(arguments.scene, print_warning, arguments.choice, arguments.time),
+      : budget(std::make_shared<LoadBudget>(arguments.limits)),
+        loading(std::make_unique<ProgressReporter>(style_of(arguments), title_of(arguments.scene), budget->progress)),
+        file(arguments.scene, print_warning, arguments.choice, arguments.time, budget),
         loaded(file.load(arguments.time.time.value_or(0))) {
     bake_single_instances(loaded.scene.geometry, file.moving_meshes());
     if (!sequence || !loaded.scene.cameras.empty() || !arguments.camera.empty()) return;
@@ -233,6 +242,7 @@ int render_still(const RenderArguments& arguments, Stage& stage, std::optional<i
   std::vector<Opacity> opacity;
   const SurfaceFilter filter = surface_filter(scene, opacity);
   const auto accelerated = build(stage.loaded, filter, {.threads = threads, .watertight = arguments.watertight});
+  stage.loading.reset();
   seconds.build = watch.lap();
 
   RenderResult result = render_with_progress(arguments, scene, *accelerated, camera);

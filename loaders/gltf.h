@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "loaders/load_limits.h"
 #include "renderer/scene.h"
 
 namespace alhazen {
@@ -41,13 +43,20 @@ struct LoadedScene {
   Scene scene;  // images still empty (width 0), as many as `encoded`
   std::vector<EncodedImage> encoded;
   std::vector<Extension> extensions;  // of `extensionsUsed` and `extensionsRequired`
+  std::shared_ptr<LoadBudget> budget;
 };
 
 using WarningSink = std::function<void(const std::string&)>;
 
 /// Throws LoadError naming file, JSON pointer, what was found and what was expected; UsageError for a choice that the
-/// file does not have.
+/// file does not have. What would take more memory than the budget has is an error before it is taken.
 [[nodiscard]] LoadedScene load_gltf(const std::filesystem::path& file, const WarningSink& warn,
-                                    const SceneChoice& choice = {});
+                                    const SceneChoice& choice = {},
+                                    const std::shared_ptr<LoadBudget>& budget = std::make_shared<LoadBudget>());
+
+/// The same of a file's bytes, as if they were at `file`: what its URIs name is sought beside it.
+[[nodiscard]] LoadedScene load_gltf(std::vector<uint8_t> bytes, const std::filesystem::path& file,
+                                    const WarningSink& warn, const SceneChoice& choice = {},
+                                    const std::shared_ptr<LoadBudget>& budget = std::make_shared<LoadBudget>());
 
 }  // namespace alhazen

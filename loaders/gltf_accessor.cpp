@@ -96,6 +96,8 @@ GltfBuffers::GltfBuffers(const GltfSource& source) : views_(source) {
   const std::set<int> elsewhere = draco_accessors(source);
   for (size_t i = 0; i < model.accessors.size(); ++i) {
     const JsonRef r = source.at("accessors", i);
+    if (model.accessors[i].sparse.isSparse)
+      source.budget->take(r, uint64_t(model.accessors[i].sparse.count), sizeof(uint32_t));
     accessors_.push_back(check_accessor(r, model, model.accessors[i]));
     if (!accessors_.back().data && accessors_.back().count > kMaxZeros && !elsewhere.contains(int(i)))
       r["count"].expected("at most " + std::to_string(kMaxZeros) + " without a bufferView");

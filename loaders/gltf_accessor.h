@@ -56,7 +56,6 @@ class GltfBuffers {
 
   [[nodiscard]] const AccessorView& accessor(int i) const { return accessors_[size_t(i)]; }
   [[nodiscard]] std::span<const uint8_t> buffer_view(int i) const { return views_[i]; }
-  [[nodiscard]] uint64_t bytes() const { return views_.bytes(); }
 
  private:
   [[nodiscard]] AccessorView check_accessor(const JsonRef& r, const tinygltf::Model& model,

@@ -32,8 +32,7 @@ std::string joined(const PointerTokens& tokens) {
 /// Reads the chosen animations' channels in their order.
 class ChannelReader {
  public:
-  ChannelReader(GltfSource& source, const GltfBuffers& buffers)
-      : source_(source), buffers_(buffers), budget_((uint64_t{1} << 22) + 4 * buffers.bytes()) {}
+  ChannelReader(GltfSource& source, const GltfBuffers& buffers) : source_(source), buffers_(buffers) {}
 
   void read(const JsonRef& animation) {
     for (const JsonRef& channel : animation.elements("channels")) {
@@ -123,7 +122,7 @@ class ChannelReader {
     const AccessorView& accessor = buffers_.accessor(input.as<int>());
     if (accessor.components != 1 || accessor.type != TINYGLTF_COMPONENT_TYPE_FLOAT)
       input.expected("an accessor of type SCALAR, of floats");
-    spend(input, accessor.count);
+    source_.budget->take(input, accessor.count, kNumber);
     std::vector<float> times = all_numbers(accessor);
     check_finite(input, times);
     const auto fall = std::is_sorted_until(times.begin(), times.end());
@@ -142,7 +141,7 @@ class ChannelReader {
                   (rows == 3 ? ", three times," : "") + " for each of " + std::to_string(keys.times.size()) +
                   " keys; the accessor has " + std::to_string(accessor.count) + " elements of " +
                   std::to_string(accessor.components));
-    spend(output, found);
+    source_.budget->take(output, found, kNumber);
     std::vector<float> values = all_numbers(accessor);
     check_finite(output, values);
     if (keys.rotations) check_rotations(output, values, rows);
@@ -155,16 +154,10 @@ class ChannelReader {
         output.fail("expected unit quaternions, found 0 0 0 0 at key " + std::to_string(i / (4 * rows)));
   }
 
-  /// Channels may share the few bytes of a small file, so what all of them unfold to is bounded.
-  void spend(const JsonRef& r, uint64_t count) {
-    if (count > budget_)
-      r.fail("the animations up to here share their bytes so often that they unfold to too many keys");
-    budget_ -= count;
-  }
+  static constexpr uint64_t kNumber = sizeof(float) + sizeof(uint32_t);  // bytes: it and, while it is read, its index
 
   GltfSource& source_;
   const GltfBuffers& buffers_;
-  uint64_t budget_;
   std::vector<Channel> channels_;
   std::vector<std::string> unknown_;
 };

@@ -12,10 +12,10 @@ std::string bytes_text(uint64_t n) { return std::to_string(n) + (n == 1 ? " byte
 /// What says where a view's bytes are: its extension where they are compressed, else itself.
 JsonRef stored(const JsonRef& view) { return meshopt_extension(view).value_or(view); }
 
-Bytes read_external(const JsonRef& buffer, const GltfDocument& document) {
+Bytes read_external(const JsonRef& buffer, const GltfSource& source) {
   const auto uri = buffer.find("uri");
   if (!uri) buffer.fail("`uri` is missing, and the file has no GLB chunk for this buffer");
-  auto bytes = resolve_uri(*uri, document.folder);
+  auto bytes = resolve_uri(*uri, source.document.folder, *source.budget);
   if (!bytes) uri->fail("cannot read `" + uri->as<std::string>().substr(0, 80) + "`");
   return std::move(*bytes);
 }
@@ -33,7 +33,7 @@ GltfBufferViews::GltfBufferViews(const GltfSource& source) {
   read_buffers(source);
   const auto views = source.root().elements("bufferViews");
   for (const JsonRef& view : views) views_.push_back(cut(stored(view)));
-  decode(views);
+  decode(views, *source.budget);
 }
 
 void GltfBufferViews::read_buffers(const GltfSource& source) {
@@ -45,9 +45,8 @@ void GltfBufferViews::read_buffers(const GltfSource& source) {
   for (size_t i = 0; i < buffers.size(); ++i) {
     if (!needed[i]) continue;
     const bool in_glb = i == 0 && !buffers[i].has("uri") && source.document.bin;
-    if (!in_glb) owned_[i] = read_external(buffers[i], source.document);
+    if (!in_glb) owned_[i] = read_external(buffers[i], source);
     buffers_[i] = cut_to_length(buffers[i], in_glb ? *source.document.bin : std::span<const uint8_t>(owned_[i]));
-    bytes_ += buffers_[i].size();
   }
 }
 
@@ -60,18 +59,13 @@ std::span<const uint8_t> GltfBufferViews::cut(const JsonRef& view) const {
   return buffer.subspan(offset, length);
 }
 
-/// Views may share a stream, so what all of them unfold to is bounded.
-void GltfBufferViews::decode(const std::vector<JsonRef>& views) {
-  constexpr uint64_t kSlack = 1 << 24, kMostByByte = 64;
-  const uint64_t most = kSlack + kMostByByte * bytes_;
+void GltfBufferViews::decode(const std::vector<JsonRef>& views, LoadBudget& budget) {
   std::vector<size_t> compressed;
   for (size_t i = 0; i < views.size(); ++i) {
     const auto r = meshopt_extension(views[i]);
     if (!r) continue;
     compressed.push_back(i);
-    bytes_ += meshopt_size(*r, views_[i]);
-    if (bytes_ > most)
-      r->fail("the compressed views up to here share their bytes so often that they unfold to too much");
+    budget.take(*r, meshopt_size(*r, views_[i]));
   }
   decoded_.resize(compressed.size());
   for_each_in_parallel(compressed.size(), [&](size_t k) {

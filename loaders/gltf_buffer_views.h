@@ -17,16 +17,14 @@ class GltfBufferViews {
   explicit GltfBufferViews(const GltfSource& source);
 
   [[nodiscard]] std::span<const uint8_t> operator[](int view) const { return views_[size_t(view)]; }
-  [[nodiscard]] uint64_t bytes() const { return bytes_; }  // of all buffers, and of what was compressed in them
 
  private:
   void read_buffers(const GltfSource& source);
   [[nodiscard]] std::span<const uint8_t> cut(const JsonRef& view) const;
-  void decode(const std::vector<JsonRef>& views);
+  void decode(const std::vector<JsonRef>& views, LoadBudget& budget);
 
   std::vector<Bytes> owned_, decoded_;
   std::vector<std::span<const uint8_t>> buffers_, views_;
-  uint64_t bytes_ = 0;
 };
 
 }  // namespace alhazen

@@ -109,16 +109,14 @@ DeformationPlan plan_deformations(const GltfSource& source, std::span<const uint
   return plan;
 }
 
-void check_deformations(GltfSource& source, const GltfBuffers& buffers,
-                        const std::vector<std::vector<GltfPrimitive>>& deformable, std::span<const Skin> skins,
-                        const DeformationPlan& plan) {
-  uint64_t left = (uint64_t{1} << 23) + 4 * buffers.bytes();
+void check_deformations(GltfSource& source, const std::vector<std::vector<GltfPrimitive>>& deformable,
+                        std::span<const Skin> skins, const DeformationPlan& plan) {
+  // Bytes of a vertex with all that it carries; of a triangle with its share of the hierarchy.
+  constexpr uint64_t kVertex = 128, kTriangle = 160;
   for (const Deformation& how : plan.all) {
     for (const GltfPrimitive& primitive : deformable[how.mesh]) {
-      const uint64_t size = primitive.part.positions.size() + primitive.part.triangles.size();
-      if (size > left)
-        primitive.r.fail("so many nodes deform the meshes up to here that they unfold to too many vertices");
-      left -= size;
+      source.budget->take(primitive.r, primitive.part.positions.size(), kVertex);
+      source.budget->take(primitive.r, primitive.part.triangles.size(), kTriangle);
       if (how.skin == kNone) continue;
       if (primitive.skin.per_vertex == 0)
         source.warn(primitive.r.pointer(), "has no JOINTS_0 for its skin; it follows its node");

@@ -45,9 +45,8 @@ struct Movement {
 /// Throws LoadError for a joint that its skin does not have, for weights that are not as many as the targets, and where
 /// all copies together are larger than what a file of that many bytes may ask for. Warns of primitives that a skin does
 /// not hold: they follow their node.
-void check_deformations(GltfSource& source, const GltfBuffers& buffers,
-                        const std::vector<std::vector<GltfPrimitive>>& deformable, std::span<const Skin> skins,
-                        const DeformationPlan& plan);
+void check_deformations(GltfSource& source, const std::vector<std::vector<GltfPrimitive>>& deformable,
+                        std::span<const Skin> skins, const DeformationPlan& plan);
 
 /// The mesh at the weights that the JSON has now, under its skin in world space, else in its own.
 [[nodiscard]] Mesh deformed(const GltfSource& source, const std::vector<GltfPrimitive>& rest, const Deformation& how,

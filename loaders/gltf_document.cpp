@@ -1,5 +1,6 @@
 #include "loaders/gltf_document.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr int kMaxDepth = 64;
-constexpr size_t kMaxJsonBytes = size_t{1} << 30;
+constexpr uint64_t kValueBytes = 128;  // what a value of JSON takes, and its copy for tinygltf
 constexpr size_t kGlbHeader = 12, kChunkHeader = 8;
 constexpr uint32_t kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;
 
@@ -49,10 +50,15 @@ std::vector<Chunk> glb_chunks(const std::string& name, std::span<const uint8_t> 
   return chunks;
 }
 
-/// Whether brackets, outside of strings, are nested deeper than kMaxDepth.
-bool too_deep(std::string_view text) {
+struct JsonSize {
+  int depth = 0;        // of brackets; counted no further than kMaxDepth + 1
+  uint64_t values = 0;  // at most
+};
+
+JsonSize size_of(std::string_view text) {
   int depth = 0;
   bool quoted = false;
+  JsonSize size;
   for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (quoted) {
@@ -61,12 +67,16 @@ bool too_deep(std::string_view text) {
     } else if (c == '"') {
       quoted = true;
     } else if (c == '[' || c == '{') {
-      if (++depth > kMaxDepth) return true;
+      ++size.values;
+      size.depth = std::max(size.depth, ++depth);
+      if (depth > kMaxDepth) break;
     } else if (c == ']' || c == '}') {
       --depth;
+    } else if (c == ',') {
+      ++size.values;
     }
   }
-  return false;
+  return size;
 }
 
 /// 3.0 is the integer 3, as JSON Schema has it.
@@ -80,10 +90,16 @@ void make_integral(json& value) {
   }
 }
 
-json parse_json(const std::string& name, std::string_view text) {
+json parse_json(const std::string& name, std::string_view text, LoadBudget& budget) {
   while (!text.empty() && text.back() == '\0') text.remove_suffix(1);  // padding of some GLB writers
-  if (text.size() > kMaxJsonBytes) throw LoadError(name, "", "its JSON is longer than 1 GiB");
-  if (too_deep(text)) throw LoadError(name, "", "its JSON is nested more than " + std::to_string(kMaxDepth) + " deep");
+  if (text.size() > budget.limits().json)
+    throw LoadError(name, "",
+                    "its JSON takes " + memory_text(text.size()) + ", expected at most " +
+                        memory_text(budget.limits().json) + "; --max-json raises the limit");
+  const JsonSize size = size_of(text);
+  if (size.depth > kMaxDepth)
+    throw LoadError(name, "", "its JSON is nested more than " + std::to_string(kMaxDepth) + " deep");
+  budget.take(name, text.size() + kValueBytes * size.values);
   try {
     json root = json::parse(text);
     make_integral(root);
@@ -97,36 +113,41 @@ json parse_json(const std::string& name, std::string_view text) {
 
 }  // namespace
 
-std::optional<Bytes> read_file(const fs::path& path) {
+std::optional<Bytes> read_file(const fs::path& path, LoadBudget& budget) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return std::nullopt;
   const auto size = fs::file_size(path, error);
   std::ifstream in(path, std::ios::binary);
   if (!in || error) return std::nullopt;
+  budget.take_file(path.string(), size);
   Bytes bytes(size);
   if (size && !in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size))) return std::nullopt;
   return bytes;
 }
 
-GltfDocument read_gltf_document(const fs::path& path) {
-  const std::string name = path.string();
-  auto bytes = read_file(path);
-  if (!bytes) throw LoadError(name, "", "cannot be read, expected a .gltf or .glb file");
+GltfDocument parse_gltf_document(Bytes file, const fs::path& path, LoadBudget& budget) {
   const auto text_of = [](std::span<const uint8_t> s) {
     return std::string_view(reinterpret_cast<const char*>(s.data()), s.size());
   };
+  const std::string name = path.string();
   GltfDocument document;
   document.json.file = name;
   document.folder = fs::absolute(path).parent_path();
-  if (!text_of(*bytes).starts_with("glTF")) {
-    document.json.root = parse_json(name, text_of(*bytes));
+  if (!text_of(file).starts_with("glTF")) {
+    document.json.root = parse_json(name, text_of(file), budget);
     return document;
   }
-  document.file = std::move(*bytes);
+  document.file = std::move(file);
   const std::vector<Chunk> chunks = glb_chunks(name, document.file);
-  document.json.root = parse_json(name, text_of(chunks[0].bytes));
+  document.json.root = parse_json(name, text_of(chunks[0].bytes), budget);
   if (chunks.size() > 1 && chunks[1].type == kBinChunk) document.bin = chunks[1].bytes;
   return document;
+}
+
+GltfDocument read_gltf_document(const fs::path& path, LoadBudget& budget) {
+  auto bytes = read_file(path, budget);
+  if (!bytes) throw LoadError(path.string(), "", "cannot be read, expected a .gltf or .glb file");
+  return parse_gltf_document(std::move(*bytes), path, budget);
 }
 
 }  // namespace alhazen

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "loaders/json_ref.h"
+#include "loaders/load_limits.h"
 
 namespace alhazen {
 
@@ -21,10 +22,13 @@ struct GltfDocument {
 };
 
 /// Reads .gltf or .glb, told apart by the first bytes. Throws LoadError where the file is no regular file, its GLB
-/// header or chunks are wrong, or its JSON is invalid, deeper than 64 levels or longer than 1 GiB.
-[[nodiscard]] GltfDocument read_gltf_document(const std::filesystem::path& path);
+/// header or chunks are wrong, or its JSON is invalid, deeper than 64 levels or longer than the limit.
+[[nodiscard]] GltfDocument read_gltf_document(const std::filesystem::path& path, LoadBudget& budget);
 
-/// All bytes of a regular file; none where it cannot be read.
-[[nodiscard]] std::optional<Bytes> read_file(const std::filesystem::path& path);
+/// The same of bytes that are in memory already, as if they were the file's at `path`.
+[[nodiscard]] GltfDocument parse_gltf_document(Bytes file, const std::filesystem::path& path, LoadBudget& budget);
+
+/// All bytes of a regular file; none where it cannot be read. Throws LoadError where it is larger than what is left.
+[[nodiscard]] std::optional<Bytes> read_file(const std::filesystem::path& path, LoadBudget& budget);
 
 }  // namespace alhazen

@@ -28,6 +28,12 @@ void keep_places(const std::vector<char>& moving, const std::vector<MeshInstance
   }
 }
 
+GltfSource source_of(std::vector<uint8_t> bytes, const std::filesystem::path& file, const WarningSink& warn,
+                     const std::shared_ptr<LoadBudget>& budget) {
+  budget->take_file(file.string(), bytes.size());
+  return check_gltf_source(parse_gltf_document(std::move(bytes), file, *budget), warn, budget);
+}
+
 }  // namespace
 
 struct GltfFile::Impl {
@@ -44,8 +50,8 @@ struct GltfFile::Impl {
   std::vector<char> moving;                            // by Geometry's mesh
   std::vector<Affine3d> world_from_node;               // at the time of the pose
 
-  Impl(const std::filesystem::path& file, const WarningSink& warn, const SceneChoice& choice, const TimeChoice& time)
-      : source(read_gltf_source(file, warn)),
+  Impl(GltfSource checked, const SceneChoice& choice, const TimeChoice& time)
+      : source(std::move(checked)),
         scene_index(choose_scene(source, choice.scene)),
         variant(choose_variant(source, choice.variant)),
         buffers(source),
@@ -61,7 +67,9 @@ struct GltfFile::Impl {
     world_from_node = world_from_nodes(source, forest);
   }
 
-  void place(Scene& scene) { read_scene(source, buffers, {scene_index, forest, shown, world_from_node, plan}, scene); }
+  void place(Scene& scene, bool counted) {
+    read_scene(source, buffers, {scene_index, forest, shown, world_from_node, plan, counted}, scene);
+  }
 
   void read_all_meshes(Scene& scene) {
     GltfMeshes read = read_meshes(source, buffers, scene.materials, variant, plan.deformable);
@@ -88,8 +96,12 @@ struct GltfFile::Impl {
 };
 
 GltfFile::GltfFile(const std::filesystem::path& file, const WarningSink& warn, const SceneChoice& choice,
-                   const TimeChoice& time)
-    : impl_(std::make_unique<Impl>(file, warn, choice, time)) {}
+                   const TimeChoice& time, const std::shared_ptr<LoadBudget>& budget)
+    : impl_(std::make_unique<Impl>(read_gltf_source(file, warn, budget), choice, time)) {}
+
+GltfFile::GltfFile(std::vector<uint8_t> bytes, const std::filesystem::path& file, const WarningSink& warn,
+                   const SceneChoice& choice, const TimeChoice& time, const std::shared_ptr<LoadBudget>& budget)
+    : impl_(std::make_unique<Impl>(source_of(std::move(bytes), file, warn, budget), choice, time)) {}
 
 GltfFile::~GltfFile() = default;
 
@@ -98,6 +110,7 @@ LoadedScene GltfFile::load(double seconds) {
   impl.pose(seconds);
   LoadedScene loaded;
   loaded.extensions = impl.source.extensions;
+  loaded.budget = impl.source.budget;
   Scene& scene = loaded.scene;
   GltfMaterials materials = read_materials(impl.source);
   GltfTextures textures = read_textures(impl.source, impl.buffers, materials);
@@ -105,11 +118,12 @@ LoadedScene GltfFile::load(double seconds) {
   scene.images.resize(loaded.encoded.size());
   scene.textures = std::move(textures.textures);
   scene.materials = std::move(materials.materials);
-  if (const auto shapes = impl.source.root().extension("ALHAZEN_shapes")) scene.geometry.shapes = read_shapes(*shapes);
+  if (const auto shapes = impl.source.root().extension("ALHAZEN_shapes"))
+    scene.geometry.shapes = read_shapes(*shapes, *impl.source.budget);
   impl.read_all_meshes(scene);
-  check_deformations(impl.source, impl.buffers, impl.deformable, impl.skins, impl.plan);
+  check_deformations(impl.source, impl.deformable, impl.skins, impl.plan);
   for (const tinygltf::Node& node : impl.source.model.nodes) scene.node_names.push_back(node.name);
-  impl.place(scene);
+  impl.place(scene, false);
   impl.deform(scene, [](const Deformation&) { return true; });
   return loaded;
 }
@@ -120,7 +134,7 @@ void GltfFile::move(Scene& scene, double seconds) {
   if (impl.moves.materials) scene.materials = read_materials(impl.source).materials;
   Scene now;
   now.materials.resize(scene.materials.size());
-  impl.place(now);
+  impl.place(now, true);
   keep_places(impl.moving, scene.geometry.mesh_instances, now.geometry.mesh_instances);
   scene.geometry.mesh_instances = std::move(now.geometry.mesh_instances);
   scene.geometry.shape_instances = std::move(now.geometry.shape_instances);
@@ -146,8 +160,14 @@ std::vector<std::string> GltfFile::animation_names() const {
 
 size_t GltfFile::skin_count() const { return impl_->skins.size(); }
 
-LoadedScene load_gltf(const std::filesystem::path& file, const WarningSink& warn, const SceneChoice& choice) {
-  return GltfFile(file, warn, choice).load(0);
+LoadedScene load_gltf(const std::filesystem::path& file, const WarningSink& warn, const SceneChoice& choice,
+                      const std::shared_ptr<LoadBudget>& budget) {
+  return GltfFile(file, warn, choice, {}, budget).load(0);
+}
+
+LoadedScene load_gltf(std::vector<uint8_t> bytes, const std::filesystem::path& file, const WarningSink& warn,
+                      const SceneChoice& choice, const std::shared_ptr<LoadBudget>& budget) {
+  return GltfFile(std::move(bytes), file, warn, choice, {}, budget).load(0);
 }
 
 }  // namespace alhazen

@@ -21,7 +21,11 @@ class GltfFile {
   /// Reads and checks the file; of its animations, what the chosen ones hold. Throws LoadError naming file, JSON
   /// pointer, what was found and what was expected; UsageError for a choice that the file does not have.
   GltfFile(const std::filesystem::path& file, const WarningSink& warn, const SceneChoice& choice = {},
-           const TimeChoice& time = {});
+           const TimeChoice& time = {}, const std::shared_ptr<LoadBudget>& budget = std::make_shared<LoadBudget>());
+
+  /// The same of a file's bytes, as if they were at `file`: what its URIs name is sought beside it.
+  GltfFile(std::vector<uint8_t> bytes, const std::filesystem::path& file, const WarningSink& warn,
+           const SceneChoice& choice, const TimeChoice& time, const std::shared_ptr<LoadBudget>& budget);
   ~GltfFile();
   GltfFile(const GltfFile&) = delete;
   GltfFile& operator=(const GltfFile&) = delete;

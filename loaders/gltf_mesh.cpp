@@ -1,27 +1,25 @@
 #include "loaders/gltf_mesh.h"
 
 #include <algorithm>
-#include <set>
 
+#include "loaders/gltf_layers.h"
 #include "loaders/in_parallel.h"
 
 namespace alhazen {
 namespace {
 
-/// Many primitives may share the few bytes of a small file, so what all of them unfold to is bounded.
-class Budget {
- public:
-  explicit Budget(uint64_t bytes_of_buffers) : left_((uint64_t{1} << 23) + 4 * bytes_of_buffers) {}
-  void allow(uint64_t elements) { left_ += elements; }
-  void spend(const JsonRef& r, uint64_t elements) {
-    if (elements > left_)
-      r.fail("the meshes up to here share their bytes so often that they unfold to too many vertices");
-    left_ -= elements;
-  }
+constexpr uint64_t kUnsharedCorner = 160;  // bytes, while tangents are made: without normals each becomes a vertex
 
- private:
-  uint64_t left_;
-};
+/// Bytes for each vertex of a primitive: what is kept of its attributes, and what reading them takes besides.
+uint64_t vertex_bytes(const JsonRef& attributes) {
+  constexpr uint64_t kReading = sizeof(uint32_t) + sizeof(Vec4f);
+  uint64_t bytes = sizeof(Vec3f) + kReading;
+  if (attributes.has("NORMAL")) bytes += sizeof(Vec3f);
+  if (attributes.has("TANGENT")) bytes += sizeof(Vec4f);
+  if (attributes.has("COLOR_0")) bytes += sizeof(Vec4f);
+  for (size_t i = 0; i < kMaxUvSets && attributes.has("TEXCOORD_" + std::to_string(i)); ++i) bytes += sizeof(Vec2f);
+  return bytes;
+}
 
 /// A primitive that has triangles, and whose size was found to be within what the file's bytes allow.
 struct Admitted {
@@ -33,7 +31,7 @@ struct Admitted {
 class Admission {
  public:
   Admission(GltfSource& source, const GltfBuffers& buffers, const std::vector<char>& deformable)
-      : source_(source), buffers_(buffers), deformable_(deformable), budget_(buffers.bytes()) {}
+      : source_(source), buffers_(buffers), deformable_(deformable) {}
 
   std::vector<Admitted> all() {
     std::vector<Admitted> admitted;
@@ -42,7 +40,7 @@ class Admission {
       for (size_t k = 0; k < source_.model.meshes[i].primitives.size(); ++k) {
         const tinygltf::Primitive& in = source_.model.meshes[i].primitives[k];
         if (!admit(in, primitives[k])) continue;
-        if (deformable_[i]) spend_on_deformation(primitives[k]);
+        if (deformable_[i]) take_deformation(primitives[k]);
         admitted.push_back({primitives[k], i});
       }
     }
@@ -65,34 +63,34 @@ class Admission {
     const uint64_t index = in.indices >= 0 ? buffers_.accessor(in.indices).count : vertices;
     if (in.mode == TINYGLTF_MODE_TRIANGLES && index % 3)
       source_.warn(r.pointer(), "its last " + std::to_string(index % 3) + " vertices make no triangle");
-    if (const auto draco = r.extension("KHR_draco_mesh_compression")) allow_stream((*draco)["bufferView"].as<int>());
-    budget_.spend(r, index);
-    budget_.spend(r, std::min(vertices, 2 * index + 1));  // no more are taken along
+    const uint64_t taken_along = std::min(vertices, 2 * index + 1);
+    const uint64_t triangles = in.mode == TINYGLTF_MODE_TRIANGLES ? index / 3 : index;
+    const bool draco = r.extension("KHR_draco_mesh_compression").has_value();
+    source_.budget->take(r, taken_along, vertex_bytes(r["attributes"]) + (draco ? kDracoVertex : 0));
+    source_.budget->take(r, triangles, kTriangle + (draco ? kDracoTriangle : 0));
+    source_.budget->take(r, index, sizeof(uint32_t));
     return true;
   }
 
   /// What morph targets and joints take besides.
-  void spend_on_deformation(const JsonRef& r) {
+  void take_deformation(const JsonRef& r) {
     for (const JsonRef& target : r.elements("targets"))
       for (const auto& attribute : target.value().items()) {
         const AccessorView& accessor = buffers_.accessor(attribute.value().get<int>());
-        budget_.spend(target, 1 + (accessor.data ? accessor.count : accessor.replaced.size()));
+        source_.budget->take(target, 1 + (accessor.data ? accessor.count : accessor.replaced.size()), kMorphed);
       }
     const uint64_t vertices = buffers_.accessor(r["attributes"]["POSITION"].as<int>()).count;
-    for (size_t set = joint_sets(r); set > 0; --set) budget_.spend(r, vertices);
+    source_.budget->take(r, vertices, joint_sets(r) * kJointSet);
   }
 
-  /// A byte of Draco holds more than others do; each stream counts once, however many primitives share it.
-  void allow_stream(int view) {
-    constexpr uint64_t kElementsInByte = 12;
-    if (streams_.insert(view).second) budget_.allow(kElementsInByte * buffers_.buffer_view(view).size());
-  }
+  // Bytes: the triangle itself and its share of the hierarchy; what the Draco decoder's tables take while it works.
+  static constexpr uint64_t kTriangle = 160, kDracoVertex = 100, kDracoTriangle = 150;
+  // A morphed vertex as it is read and kept; four joints and their weights.
+  static constexpr uint64_t kMorphed = 2 * sizeof(Vec4f), kJointSet = 4 * (sizeof(uint32_t) + sizeof(float));
 
   GltfSource& source_;
   const GltfBuffers& buffers_;
   const std::vector<char>& deformable_;
-  Budget budget_;
-  std::set<int> streams_;
 };
 
 /// None: the default one.
@@ -121,13 +119,17 @@ GltfMeshes read_meshes(GltfSource& source, const GltfBuffers& buffers, const std
   const std::vector<Admitted> admitted = Admission(source, buffers, deformable).all();
   std::vector<std::optional<GltfPrimitive>> primitives(admitted.size());
   std::vector<TriangleMesh> parts(admitted.size());
+  source.budget->progress.begin("meshes", admitted.size());
   for_each_in_parallel(admitted.size(), [&](size_t i) {
     const bool deforms = deformable[admitted[i].mesh];
     GltfPrimitive primitive = read_primitive(buffers, admitted[i].r, deforms);
     primitive.part.material = material_of(admitted[i].r, variant).value_or(uint32_t(materials.size() - 1));
+    if (primitive.part.tangents.empty() && tangent_uv_set(materials[primitive.part.material]))
+      source.budget->take(admitted[i].r, primitive.part.triangles.size(), 3 * kUnsharedCorner);
     parts[i] = deforms ? copy_of(primitive.part) : std::move(primitive.part);
     finish(parts[i], primitive.polygons, materials[parts[i].material]);
     if (deforms) primitives[i] = std::move(primitive);
+    ++source.budget->progress.done;
   });
   GltfMeshes all;
   all.deformable.resize(source.model.meshes.size());

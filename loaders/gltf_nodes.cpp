@@ -55,10 +55,16 @@ Forest read_forest(const GltfSource& source) {
     }
   forest.order = below(source, roots(forest));
   // With one parent at most for each, what no root reaches lies on or under a cycle.
-  std::vector<char> reached(nodes.size());
-  for (const uint32_t i : forest.order) reached[i] = 1;
+  std::vector<uint64_t> depth(nodes.size());
+  const uint64_t deepest = source.budget->limits().node_depth;
+  for (const uint32_t i : forest.order) {
+    depth[i] = 1 + (forest.parent[i] == kNone ? 0 : depth[forest.parent[i]]);
+    if (depth[i] > deepest)
+      source.at("nodes", i)
+          .fail("is nested more than " + std::to_string(deepest) + " deep; --max-node-depth raises the limit");
+  }
   for (uint32_t i = 0; i < nodes.size(); ++i)
-    if (!reached[i]) source.at("nodes", i).fail("is its own ancestor, or below one that is");
+    if (depth[i] == 0) source.at("nodes", i).fail("is its own ancestor, or below one that is");
   return forest;
 }
 

@@ -52,12 +52,8 @@ Light read_light(const JsonRef& r) {
 /// Puts into the scene what one node brings.
 class Placer {
  public:
-  Placer(GltfSource& source, const GltfBuffers& buffers, const DeformationPlan& deformations, Scene& scene)
-      : source_(source),
-        buffers_(buffers),
-        deformations_(deformations),
-        scene_(scene),
-        instances_left_(kMostInstances + buffers.bytes() / 8) {
+  Placer(GltfSource& source, const GltfBuffers& buffers, const PosedNodes& posed, Scene& scene)
+      : source_(source), buffers_(buffers), deformations_(posed.deformations), counted_(posed.counted), scene_(scene) {
     if (const auto e = source.root().extension("KHR_lights_punctual"))
       for (const JsonRef& r : e->elements("lights")) lights_.push_back(read_light(r));
   }
@@ -84,12 +80,9 @@ class Placer {
       source_.warn(r.pointer(), "its mesh is left out, its global matrix cannot be inverted");
   }
 
-  /// Nodes may share the few bytes of a small file, so what all of them unfold to is bounded.
   void place_instances(const JsonRef& e, uint32_t mesh, uint32_t node, const Affine3d& world_from_node) {
     const uint64_t count = instance_count(e, buffers_);
-    if (count > instances_left_)
-      e.fail("the instances up to here share their bytes so often that they unfold to too many");
-    instances_left_ -= count;
+    if (!counted_) source_.budget->take(e, count, kInstanceBytes);
     std::vector<MeshInstance>& placed = scene_.geometry.mesh_instances;
     placed.reserve(placed.size() + count);
     uint64_t left_out = 0;
@@ -135,13 +128,13 @@ class Placer {
     return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, world_from_node.origin};
   }
 
-  static constexpr uint64_t kMostInstances = 1 << 16;  // besides those that have bytes of their own
+  static constexpr uint64_t kInstanceBytes = 3 * sizeof(MeshInstance);  // Embree's and its hierarchy's too
 
   GltfSource& source_;
   const GltfBuffers& buffers_;
   const DeformationPlan& deformations_;
+  bool counted_;
   Scene& scene_;
-  uint64_t instances_left_;
   std::vector<Light> lights_;
 };
 
@@ -157,7 +150,7 @@ void read_surroundings(const JsonRef& e, Scene& scene) {
 void read_scene(GltfSource& source, const GltfBuffers& buffers, const PosedNodes& nodes, Scene& scene) {
   scene.geometry.parent_of_node = nodes.forest.parent;
   const std::vector<char> hidden = hidden_nodes(source, nodes.forest);
-  Placer placer(source, buffers, nodes.deformations, scene);
+  Placer placer(source, buffers, nodes, scene);
   for (const uint32_t node : nodes.shown) placer.place(node, nodes.world_from_node[node], hidden[node]);
   if (nodes.scene)
     if (const auto e = source.at("scenes", *nodes.scene).extension("ALHAZEN_lights")) read_surroundings(*e, scene);

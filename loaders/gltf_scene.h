@@ -15,6 +15,7 @@ struct PosedNodes {
   std::span<const uint32_t> shown;  // the scene's, see `scene_nodes`
   std::span<const Affine3d> world_from_node;
   const DeformationPlan& deformations;
+  bool counted = false;  // what their instances take is in the budget already
 };
 
 /// Adds what nodes bring to a scene whose materials, meshes and shapes are there already: instances, cameras, lights,

@@ -13,20 +13,24 @@ using Operation = CompositeNode::Operation;
 
 constexpr size_t kMostLeaves = 65536;  // of one composite: nesting can double them at every level
 constexpr int kDeepestComposite = 200;
+constexpr uint64_t kShapeBytes = 2 * sizeof(Shape);
 
 /// Reads shapes in any order, so that composites find their operands.
 class ShapeReader {
  public:
-  explicit ShapeReader(const JsonRef& extension) : list_(extension.elements("shapes")), shapes_(list_.size()) {}
+  ShapeReader(const JsonRef& extension, LoadBudget& budget)
+      : list_(extension.elements("shapes")), shapes_(list_.size()), budget_(budget) {}
 
   /// `asked`: where the index stands, for what is wrong with it.
   const Shape& read(size_t index, const JsonRef& asked);
   [[nodiscard]] std::vector<Shape> read_all();
+  [[nodiscard]] LoadBudget& budget() const { return budget_; }
 
  private:
   std::vector<JsonRef> list_;
   std::vector<std::optional<Shape>> shapes_;
   std::vector<size_t> open_;  // composites being read, the outermost first
+  LoadBudget& budget_;
 };
 
 /// One row for each kind of shape: its key, what its fields have to be, and what they make.
@@ -119,9 +123,19 @@ std::optional<std::variant<ClosedBody, Composite>> closed_body(const Shape& shap
   return {};
 }
 
-size_t leaf_count(const std::variant<ClosedBody, Composite>& operand) {
+size_t leaf_count(const Shape& operand) {
   const auto* composite = std::get_if<Composite>(&operand);
   return composite ? composite->leaves.size() : 1;
+}
+
+/// What the operand takes as a part of a composite.
+uint64_t operand_bytes(const Shape& operand) {
+  constexpr uint64_t kLeaf = 2 * sizeof(CompositeLeaf) + 2 * sizeof(CompositeNode), kMap = 2 * sizeof(Affine3d);
+  const auto* composite = std::get_if<Composite>(&operand);
+  uint64_t bytes = kLeaf + kMap;
+  if (composite)
+    for (const CompositeLeaf& leaf : composite->leaves) bytes += kLeaf + kMap * (1 + leaf.chain.size());
+  return bytes;
 }
 
 Shape read_composite(const JsonRef& r, ShapeReader& others) {
@@ -130,14 +144,16 @@ Shape read_composite(const JsonRef& r, ShapeReader& others) {
   size_t leaves = 0;
   for (const JsonRef& operand : r.elements("operands")) {
     const JsonRef index = operand["shape"];
-    const auto body = closed_body(others.read(index.as<size_t>(), index));
+    const Shape& shape = others.read(index.as<size_t>(), index);
+    leaves += leaf_count(shape);
+    if (leaves > kMostLeaves) r.fail("is made of more than " + std::to_string(kMostLeaves) + " bodies");
+    others.budget().take(r, operand_bytes(shape));
+    const auto body = closed_body(shape);
     if (!body)
       index.fail(
           "shape " + index.value().dump() +
           " is not a closed body, expected a sphere, cylinder with caps, box, solid quadric, whole ellipsoid with "
           "f < 0 inside, or composite");
-    leaves += leaf_count(*body);
-    if (leaves > kMostLeaves) r.fail("is made of more than " + std::to_string(kMostLeaves) + " bodies");
     operands.push_back({*body, operand.has("matrix") ? read_matrix(operand["matrix"]) : Affine3d{}});
   }
   return make_composite(name == "union"          ? Operation::unite
@@ -226,6 +242,9 @@ std::vector<Shape> ShapeReader::read_all() {
 
 Check shape_description() { return check_shape; }
 
-std::vector<Shape> read_shapes(const JsonRef& extension) { return ShapeReader(extension).read_all(); }
+std::vector<Shape> read_shapes(const JsonRef& extension, LoadBudget& budget) {
+  budget.take(extension["shapes"], extension["shapes"].value().size(), kShapeBytes);
+  return ShapeReader(extension, budget).read_all();
+}
 
 }  // namespace alhazen

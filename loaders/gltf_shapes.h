@@ -5,6 +5,7 @@
 
 #include "accel/shape.h"
 #include "loaders/json_check.h"
+#include "loaders/load_limits.h"
 
 namespace alhazen {
 
@@ -12,6 +13,6 @@ namespace alhazen {
 [[nodiscard]] Check shape_description();
 
 /// The file's shapes in their order, from the checked extension object.
-[[nodiscard]] std::vector<Shape> read_shapes(const JsonRef& extension);
+[[nodiscard]] std::vector<Shape> read_shapes(const JsonRef& extension, LoadBudget& budget);
 
 }  // namespace alhazen

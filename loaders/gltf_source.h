@@ -4,6 +4,7 @@
 
 #include <tiny_gltf.h>
 
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -32,6 +33,7 @@ struct GltfSource {
   tinygltf::Model model;  // as many elements of each kind as the JSON has; buffers and images are placeholders
   std::vector<Extension> extensions;  // of `extensionsUsed` and `extensionsRequired`
   Warnings warn;
+  std::shared_ptr<LoadBudget> budget;
 
   [[nodiscard]] JsonRef root() const { return JsonRef(document.json); }
   /// Element `i` of the root's array `key`.
@@ -40,7 +42,12 @@ struct GltfSource {
 
 /// Reads and checks the file, all but the bytes of buffers and images. Throws LoadError for whatever `check_gltf`
 /// finds. Extensions that are ignored give a warning.
-[[nodiscard]] GltfSource read_gltf_source(const std::filesystem::path& path, const WarningSink& warn);
+[[nodiscard]] GltfSource read_gltf_source(const std::filesystem::path& path, const WarningSink& warn,
+                                          std::shared_ptr<LoadBudget> budget = std::make_shared<LoadBudget>());
+
+/// The same of a document.
+[[nodiscard]] GltfSource check_gltf_source(GltfDocument document, const WarningSink& warn,
+                                           std::shared_ptr<LoadBudget> budget);
 
 /// Accessors that have no bufferView get this one in the model: all zeros.
 [[nodiscard]] inline int zeros_view(const tinygltf::Model& model) { return int(model.bufferViews.size()) - 1; }

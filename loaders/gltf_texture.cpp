@@ -51,6 +51,7 @@ Texture read_texture(const GltfSource& source, const JsonRef& r) {
 Bytes read_image(GltfSource& source, const GltfBuffers& buffers, const JsonRef& r) {
   if (const auto view = r.find("bufferView")) {
     const std::span<const uint8_t> bytes = buffers.buffer_view(view->as<int>());
+    source.budget->take(r, bytes.size());
     return {bytes.begin(), bytes.end()};
   }
   const auto uri = r.find("uri");
@@ -58,7 +59,7 @@ Bytes read_image(GltfSource& source, const GltfBuffers& buffers, const JsonRef& 
     source.warn(r.pointer(), "has neither `uri` nor `bufferView`, taken as white");
     return {};
   }
-  auto bytes = resolve_uri(*uri, source.document.folder);
+  auto bytes = resolve_uri(*uri, source.document.folder, *source.budget);
   if (!bytes) source.warn(uri->pointer(), "cannot read `" + uri->as<std::string>().substr(0, 80) + "`, taken as white");
   return bytes ? std::move(*bytes) : Bytes{};
 }

@@ -83,9 +83,12 @@ std::string decode_percent(std::string_view text) {
   return out;
 }
 
-std::optional<Bytes> resolve_uri(const JsonRef& uri, const fs::path& folder) {
+std::optional<Bytes> resolve_uri(const JsonRef& uri, const fs::path& folder, LoadBudget& budget) {
   const auto& text = uri.value().get_ref<const std::string&>();
-  if (text.starts_with("data:")) return data_of(uri, text);
+  if (text.starts_with("data:")) {
+    budget.take(uri, text.size());
+    return data_of(uri, text);
+  }
   if (has_scheme(text)) return std::nullopt;
   const std::string name = decode_percent(text);
   if (name.empty() || name.find('\0') != std::string::npos) uri.expected("the name of a file");
@@ -95,7 +98,7 @@ std::optional<Bytes> resolve_uri(const JsonRef& uri, const fs::path& folder) {
   const fs::path target = error ? fs::path{} : fs::weakly_canonical(root / name, error);
   if (error) return std::nullopt;
   if (!lies_in(root, target)) uri.fail("`" + name.substr(0, 80) + "` lies outside the scene's folder");
-  return read_file(target);
+  return read_file(target, budget);
 }
 
 }  // namespace alhazen

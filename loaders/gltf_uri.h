@@ -14,8 +14,9 @@ namespace alhazen {
 /// data: URIs of any media type, base64 or percent-encoded. Other schemes are never followed. File names are
 /// percent-decoded once and must stay in the folder: an absolute path, one that leaves it by `..` or by a symbolic
 /// link, and anything but a regular file are refused. Throws LoadError at `uri` for what is malformed or leaves the
-/// folder.
-[[nodiscard]] std::optional<Bytes> resolve_uri(const JsonRef& uri, const std::filesystem::path& folder);
+/// folder, and for more bytes than the budget has.
+[[nodiscard]] std::optional<Bytes> resolve_uri(const JsonRef& uri, const std::filesystem::path& folder,
+                                               LoadBudget& budget);
 
 [[nodiscard]] std::optional<Bytes> decode_base64(std::string_view text);
 /// %41 -> A; what is no escape stays as it is.

@@ -2,7 +2,6 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,29 +10,17 @@
 #include <new>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <type_traits>
 #include <utility>
 
-#include "core/fork_join.h"
+#include "core/error.h"
+#include "loaders/image_header.h"
 #include "loaders/image_ktx.h"
+#include "loaders/in_parallel.h"
 #include "materials/mipmap.h"
 
 namespace alhazen {
 namespace {
-
-/// OpenImageIO's name of the format by the file's first bytes; empty: none that is read here.
-std::string format_of(const std::vector<uint8_t>& bytes) {
-  const std::string_view head(reinterpret_cast<const char*>(bytes.data()), std::min<size_t>(bytes.size(), 16));
-  if (head.starts_with("\x89PNG")) return "png";
-  if (head.starts_with("\xff\xd8\xff")) return "jpeg";
-  if (head.starts_with("RIFF") && head.size() >= 12 && head.substr(8, 4) == "WEBP") return "webp";
-  if (head.starts_with("\x76\x2f\x31\x01")) return "openexr";
-  if (head.starts_with("#?")) return "hdr";
-  if (head.starts_with("BM")) return "bmp";
-  if (head.starts_with("DDS ")) return "dds";
-  return {};
-}
 
 template <class T>
 void read_samples(OIIO::ImageInput& in, OIIO::TypeDesc type, TextureImage& image) {
@@ -42,10 +29,20 @@ void read_samples(OIIO::ImageInput& in, OIIO::TypeDesc type, TextureImage& image
   image.samples = std::move(samples);
 }
 
-TextureImage decode(const std::vector<uint8_t>& bytes) {
-  const std::string format = format_of(bytes);
-  if (is_ktx(bytes)) return decode_ktx(bytes);
-  if (format.empty()) throw std::runtime_error("unknown image format");
+/// Whether the decoded image, with smaller levels if it is to have them, is within the limits.
+void check_size(const EncodedImage& image, const ImageHeader& header, LoadBudget& budget) {
+  const uint64_t most = budget.limits().image_pixels;
+  if (header.pixels() > most)
+    throw LoadError(image.place, "",
+                    "its image has " + std::to_string(header.width) + " x " + std::to_string(header.height) +
+                        " pixels, expected " + std::to_string(most) + " at most; --max-image-pixels raises the limit");
+  const uint64_t bytes = header.pixels() * header.bytes_per_pixel;
+  budget.take(image.place, bytes + (image.mipmaps ? bytes / 3 : 0) + header.scratch);
+}
+
+TextureImage decode(ImageKind kind, const std::vector<uint8_t>& bytes, const ImageHeader& header) {
+  if (kind == ImageKind::ktx2) return decode_ktx(bytes);
+  const std::string format(name_of(kind));
   OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
   const auto in = OIIO::ImageInput::create(format);
   if (!in) throw std::runtime_error(OIIO::geterror());
@@ -55,6 +52,8 @@ TextureImage decode(const std::vector<uint8_t>& bytes) {
   config["oiio:UnassociatedAlpha"] = 1;
   if (!in->open("image." + format, spec, config)) throw std::runtime_error(in->geterror());
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0) throw std::runtime_error("no pixels");
+  if (uint64_t(spec.width) * uint64_t(spec.height) > header.pixels() || spec.depth > 1)
+    throw std::runtime_error("cubes and volumes are not read");
 
   TextureImage image;
   image.width = spec.width, image.height = spec.height, image.channels = std::min(spec.nchannels, 4);
@@ -90,19 +89,29 @@ TextureImage roughness_image(const TextureImage& glossiness, float factor) {
 
 }  // namespace
 
-std::vector<TextureImage> decode_images(const std::vector<EncodedImage>& encoded, const WarningSink& warn) {
+std::vector<TextureImage> decode_images(std::vector<EncodedImage> encoded, const WarningSink& warn,
+                                        LoadBudget& budget) {
   std::vector<TextureImage> images(encoded.size());
   std::mutex warning;
-  const ForkJoin order;
-  tbb::parallel_for(size_t(0), encoded.size(), order.task([&](size_t i) {
+  budget.progress.begin("images", encoded.size());
+  for_each_in_parallel(encoded.size(), [&](size_t i) {
+    ++budget.progress.done;
     if (encoded[i].bytes.empty()) return;
     const auto failed = [&](const std::string& reason) {
       const std::lock_guard lock(warning);
       if (warn) warn(encoded[i].place + ": cannot decode the image, white is used: " + reason);
     };
     try {
-      images[i] = decode(encoded[i].bytes);
+      const auto kind = image_kind(encoded[i].bytes);
+      if (!kind) return failed("unknown image format");
+      const auto header = read_image_header(*kind, encoded[i].bytes);
+      if (!header) return failed("its header is damaged, or of a kind that is not read");
+      check_size(encoded[i], *header, budget);
+      images[i] = decode(*kind, encoded[i].bytes, *header);
+      encoded[i].bytes = {};
       if (encoded[i].mipmaps) add_smaller_levels(images[i], encoded[i].space);
+    } catch (const LoadError&) {
+      throw;
     } catch (const std::bad_alloc&) {
       failed("out of memory");
     } catch (const std::exception& error) {
@@ -110,13 +119,19 @@ std::vector<TextureImage> decode_images(const std::vector<EncodedImage>& encoded
     } catch (...) {
       failed("unknown error");
     }
-  }));
+  });
   for (size_t i = 0; i < encoded.size(); ++i)
     if (const uint32_t from = encoded[i].glossiness_of; from != kNone && images[from].width > 0) {
+      budget.take(encoded[from].place, uint64_t(images[from].width) * uint64_t(images[from].height) * 4 / 3 * 4);
       images[i] = roughness_image(images[from], encoded[i].glossiness_factor);
       if (encoded[i].mipmaps) add_smaller_levels(images[i], ColorSpace::linear);
     }
   return images;
+}
+
+std::vector<TextureImage> decode_images(std::vector<EncodedImage> encoded, const WarningSink& warn) {
+  LoadBudget budget;
+  return decode_images(std::move(encoded), warn, budget);
 }
 
 }  // namespace alhazen

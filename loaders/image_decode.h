@@ -8,8 +8,10 @@
 
 namespace alhazen {
 
-/// Decodes all images in parallel. One that cannot be decoded stays empty (reads as white) with a warning.
-[[nodiscard]] std::vector<TextureImage> decode_images(const std::vector<EncodedImage>& encoded,
-                                                      const WarningSink& warn);
+/// Decodes all images in parallel. One that cannot be decoded stays empty (reads as white) with a warning; one that is
+/// larger than the budget's limits is an error. An image's bytes are freed as soon as it is decoded.
+[[nodiscard]] std::vector<TextureImage> decode_images(std::vector<EncodedImage> encoded, const WarningSink& warn,
+                                                      LoadBudget& budget);
+[[nodiscard]] std::vector<TextureImage> decode_images(std::vector<EncodedImage> encoded, const WarningSink& warn);
 
 }  // namespace alhazen

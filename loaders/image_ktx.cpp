@@ -1,22 +1,14 @@
 #include "loaders/image_ktx.h"
 
-#include <algorithm>
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 
 #ifdef ALHAZEN_KTX
 #include <ktx.h>
 #endif
 
 namespace alhazen {
-
-bool is_ktx(std::span<const uint8_t> file) {
-  constexpr std::string_view kMagic = "\xABKTX 20\xBB\r\n\x1A\n";
-  return file.size() >= kMagic.size() &&
-         std::equal(kMagic.begin(), kMagic.end(), file.begin(), [](char a, uint8_t b) { return uint8_t(a) == b; });
-}
 
 #ifdef ALHAZEN_KTX
 namespace {

@@ -14,8 +14,6 @@ inline constexpr bool kDecodesKtx = true;
 inline constexpr bool kDecodesKtx = false;
 #endif
 
-[[nodiscard]] bool is_ktx(std::span<const uint8_t> file);
-
 /// Level 0 of the first layer and face, 8 bits for each channel. Throws std::runtime_error for a file that is damaged,
 /// a format that libktx does not unpack, or a build without it.
 [[nodiscard]] TextureImage decode_ktx(std::span<const uint8_t> file);

@@ -33,6 +33,8 @@ JsonRef JsonRef::operator[](const std::string& key) const {
 }
 JsonRef JsonRef::operator[](size_t i) const { return {*document_, value_->at(i), pointer_ + "/" + std::to_string(i)}; }
 
+std::string JsonRef::place() const { return document_->file + (pointer_.empty() ? "" : ": " + pointer_); }
+
 std::optional<JsonRef> JsonRef::find(const std::string& key) const {
   if (!has(key)) return std::nullopt;
   return (*this)[key];

@@ -28,6 +28,8 @@ class JsonRef {
   /// Throw LoadError at this place. `expected` says what was found too.
   [[noreturn]] void fail(const std::string& reason) const;
   [[noreturn]] void expected(const std::string& what) const;
+  /// "scene.gltf: /images/3"
+  [[nodiscard]] std::string place() const;
 
   [[nodiscard]] bool has(const std::string& key) const { return value_->contains(key); }
   [[nodiscard]] JsonRef operator[](const std::string& key) const;  // which the object has

@@ -33,6 +33,7 @@ class CommandLine(unittest.TestCase):
         result = self.render("a.exr", "--progress", "json", "--size", "480x270", "--spp", "8")
         lines = [json.loads(line) for line in result.stdout.splitlines()]
         progress, facts = lines[:-1], lines[-1]
+        progress = [line for line in progress if line["event"] != "loading"]  # where that takes more than a second
         self.assertEqual({line["event"] for line in progress} | {"progress"}, {"progress"})
         fractions = [line["fraction"] for line in progress]
         self.assertEqual(fractions, sorted(fractions))

@@ -176,12 +176,13 @@ TEST(GltfShapes, CompositesHaveNoCyclesAndDoNotExplode) {
   json self = lens();
   self["operands"][0]["shape"] = 0;
   EXPECT_EQ(composite_error(self, {body("sphere")}), "/0/composite/operands/0/shape: shape 0 is an operand of itself");
-  // Each level unites the next with itself: 2^30 bodies from 31 shapes.
+  // Each level unites the next with itself: 2^30 bodies from 31 shapes, too much for the memory that so small a file may
+  // ask for.
   json bomb = json::array();
   for (int k = 0; k < 30; ++k)
     bomb.push_back({{"composite", {{"operation", "union"}, {"operands", {{{"shape", k + 1}}, {{"shape", k + 1}}}}}}});
   bomb.push_back(body("sphere"));
-  EXPECT_TRUE(error_of(with_shapes(bomb)).ends_with("/composite: is made of more than 65536 bodies"));
+  EXPECT_TRUE(error_of(with_shapes(bomb)).ends_with("--max-memory raises the limit"));
   json chain = json::array();
   for (int k = 0; k < 1000; ++k)
     chain.push_back({{"composite", {{"operation", "union"}, {"operands", {{{"shape", k + 1}}}}}}});
