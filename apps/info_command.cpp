@@ -6,10 +6,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <set>
 #include <string>
 
 #include "apps/limit_options.h"
 #include "core/error.h"
+#include "loaders/gltf_examine.h"
 #include "loaders/gltf_file.h"
 
 namespace alhazen {
@@ -171,8 +173,12 @@ std::string info_text(const Json& info) {
 }
 
 int run_info(const std::string& file, const LoadLimits& limits, bool as_json) {
-  const auto warn = [](const std::string& text) { std::fprintf(stderr, "warning: %s\n", text.c_str()); };
+  std::set<std::string> said;  // both readers find the same
+  const auto warn = [&](const std::string& text) {
+    if (said.insert(text).second) std::fprintf(stderr, "warning: %s\n", text.c_str());
+  };
   const Json info = info_json(file, warn, std::make_shared<LoadBudget>(limits));
+  examine_gltf(file, warn, std::make_shared<LoadBudget>(limits));
   const std::string text = as_json ? info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : info_text(info);
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
     throw WriteError("standard output", "cannot be written");
