@@ -145,7 +145,7 @@ void examine_primitive(Examiner& e, const JsonRef& r) {
   }
 }
 
-void examine_meshes_alone(Examiner& e) {
+void examine_each_mesh(Examiner& e) {
   for (const JsonRef& mesh : e.root().elements("meshes")) {
     const auto primitives = mesh.elements("primitives");
     const auto targets = [](const JsonRef& r) { return r.has("targets") ? r["targets"].value().size() : 0; };
@@ -179,7 +179,7 @@ void examine_strides(Examiner& e) {
 }  // namespace
 
 void examine_meshes(Examiner& e) {
-  examine_meshes_alone(e);
+  examine_each_mesh(e);
   examine_strides(e);
 }
 
