@@ -100,7 +100,10 @@ int run(const BenchArguments& arguments) {
 Command add_bench_command(CLI::App& program) {
   const auto arguments = std::make_shared<BenchArguments>();
   CLI::App* command = program.add_subcommand("bench", "Measure what tracing a scene costs")->group("Commands");
-  command->add_option("SCENE", arguments->scenes, "glTF 2.0 files (.gltf or .glb); by default the scenes of `alhazen make`")->type_name("...");
+  command
+      ->add_option("SCENE", arguments->scenes,
+                   "glTF 2.0 files (.gltf or .glb); by default the scenes of `alhazen make`")
+      ->type_name("...");
   add_size_option(*command, arguments->options);
   add_choice<Integrator>(*command, "--integrator", arguments->options.integrator,
                          {{"whitted", Integrator::whitted}, {"signature", Integrator::signature}},

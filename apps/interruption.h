@@ -1,5 +1,5 @@
-// Ctrl-C and SIGTERM: the first one stops the work and saves what is finished, a second one, 0.2 s later or more, ends at
-// once.
+// Ctrl-C and SIGTERM: the first one stops the work and saves what is finished, a second one, 0.2 s later or more, ends
+// at once.
 #pragma once
 
 #include <atomic>

@@ -176,8 +176,8 @@ TEST(GltfShapes, CompositesHaveNoCyclesAndDoNotExplode) {
   json self = lens();
   self["operands"][0]["shape"] = 0;
   EXPECT_EQ(composite_error(self, {body("sphere")}), "/0/composite/operands/0/shape: shape 0 is an operand of itself");
-  // Each level unites the next with itself: 2^30 bodies from 31 shapes, too much for the memory that so small a file may
-  // ask for.
+  // Each level unites the next with itself: 2^30 bodies from 31 shapes, too much for the memory that so small a file
+  // may ask for.
   json bomb = json::array();
   for (int k = 0; k < 30; ++k)
     bomb.push_back({{"composite", {{"operation", "union"}, {"operands", {{{"shape", k + 1}}, {{"shape", k + 1}}}}}}});
