@@ -47,14 +47,7 @@ CLI::Validator finite() {
           ""};
 }
 
-void add_time_options(CLI::App& command, RenderArguments& arguments) {
-  command
-      .add_option("--animation", arguments.time.animation,
-                  "Index or name of an animation, all, or none: the rest pose; by default none, with a time the first")
-      ->type_name("INDEX|NAME");
-  command.add_option("--time", arguments.time.time, "Seconds into the animation")
-      ->type_name("SECONDS")
-      ->check(finite());
+void add_frame_options(CLI::App& command, RenderArguments& arguments) {
   command
       .add_option_function<std::string>(
           "--frames", [&](const std::string& text) { arguments.frames = parse_frames(text); },
@@ -68,63 +61,15 @@ void add_time_options(CLI::App& command, RenderArguments& arguments) {
 }
 
 void add_picture_options(CLI::App& command, RenderArguments& arguments) {
-  RenderOptions& options = arguments.options;
-  add_size_option(command, options);
-  command
-      .add_option("--camera", arguments.camera,
-                  "Index in the file's cameras, or a name; by default the scene's first, or one that shows it all")
-      ->type_name("INDEX|NAME");
-  command
-      .add_option("--scene", arguments.choice.scene,
-                  "Index or name of one of the file's scenes; by default its own choice")
-      ->type_name("INDEX|NAME");
-  command
-      .add_option("--variant", arguments.choice.variant,
-                  "Index or name of a variant of the materials (KHR_materials_variants)")
-      ->type_name("INDEX|NAME");
-  add_time_options(command, arguments);
-  add_choice<Integrator>(command, "--integrator", options.integrator,
+  add_view_options(command, arguments);
+  add_frame_options(command, arguments);
+  add_choice<Integrator>(command, "--integrator", arguments.options.integrator,
                          {{"whitted", Integrator::whitted}, {"signature", Integrator::signature}},
                          "What a pixel shows: light, or which node, primitive and material are seen");
-  command.add_option("--spp", options.samples, "Samples per pixel; 1 takes the pixel's centre")
-      ->type_name("N")
-      ->check(CLI::Range(1, 65536).description(""))
-      ->capture_default_str();
-  command.add_option("--max-depth", options.max_depth, "How often a ray may be mirrored or refracted on its way")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1000).description(""))
-      ->capture_default_str();
-  command.add_option("--min-weight", options.min_weight, "A ray that counts less than this in its pixel is not traced")
-      ->type_name("X")
-      ->check(finite())
-      ->check(CLI::NonNegativeNumber.description(""))
-      ->capture_default_str();
-  command.add_flag("--watertight", arguments.watertight,
-                   "Triangles of our own in place of Embree's: no ray slips through a closed mesh; slower");
+  add_tracing_options(command, arguments);
 }
 
-void add_light_options(CLI::App& command, RenderArguments& arguments) {
-  add_choice<LightChoice>(
-      command, "--lights", arguments.lights,
-      {{"auto", LightChoice::automatic}, {"scene", LightChoice::scene}, {"studio", LightChoice::studio}},
-      "The scene's lights, or three studio lights about the camera; auto: studio where the scene has none");
-  add_color(command, "--background", arguments.background, "Linear colour behind everything, instead of the scene's");
-  add_color(command, "--ambient", arguments.ambient, "Linear ambient light, instead of the scene's");
-  command
-      .add_option("--environment", arguments.environment,
-                  "Equirectangular image (.hdr, .exr) that lights the scene and is its background")
-      ->type_name("FILE");
-  command
-      .add_option("--environment-rotation", arguments.environment_rotation,
-                  "Turns it about the vertical axis, seen from above against the clock")
-      ->type_name("DEG")
-      ->check(finite())
-      ->default_str("0");
-  command.add_option("--environment-strength", arguments.environment_strength, "Multiplies its light")
-      ->type_name("X")
-      ->check(finite())
-      ->check(CLI::NonNegativeNumber.description(""))
-      ->default_str("1");
+void add_display_options(CLI::App& command, RenderArguments& arguments) {
   command.add_option("--exposure", arguments.exposure, "Stops brighter (or darker): colours are multiplied by 2^STOPS")
       ->type_name("STOPS")
       ->check(finite())
@@ -195,12 +140,78 @@ void add_size_option(CLI::App& command, RenderOptions& options) {
       ->default_str(std::to_string(options.width) + "x" + std::to_string(options.height));
 }
 
+void add_view_options(CLI::App& command, RenderArguments& arguments) {
+  add_size_option(command, arguments.options);
+  command
+      .add_option("--camera", arguments.camera,
+                  "Index in the file's cameras, or a name; by default the scene's first, or one that shows it all")
+      ->type_name("INDEX|NAME");
+  command
+      .add_option("--scene", arguments.choice.scene,
+                  "Index or name of one of the file's scenes; by default its own choice")
+      ->type_name("INDEX|NAME");
+  command
+      .add_option("--variant", arguments.choice.variant,
+                  "Index or name of a variant of the materials (KHR_materials_variants)")
+      ->type_name("INDEX|NAME");
+  command
+      .add_option("--animation", arguments.time.animation,
+                  "Index or name of an animation, all, or none: the rest pose; by default none, with a time the first")
+      ->type_name("INDEX|NAME");
+  command.add_option("--time", arguments.time.time, "Seconds into the animation")
+      ->type_name("SECONDS")
+      ->check(finite());
+  command.add_flag("--watertight", arguments.watertight,
+                   "Triangles of our own in place of Embree's: no ray slips through a closed mesh; slower");
+}
+
+void add_tracing_options(CLI::App& command, RenderArguments& arguments) {
+  RenderOptions& options = arguments.options;
+  command.add_option("--spp", options.samples, "Samples per pixel; 1 takes the pixel's centre")
+      ->type_name("N")
+      ->check(CLI::Range(1, 65536).description(""))
+      ->capture_default_str();
+  command.add_option("--max-depth", options.max_depth, "How often a ray may be mirrored or refracted on its way")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1000).description(""))
+      ->capture_default_str();
+  command.add_option("--min-weight", options.min_weight, "A ray that counts less than this in its pixel is not traced")
+      ->type_name("X")
+      ->check(finite())
+      ->check(CLI::NonNegativeNumber.description(""))
+      ->capture_default_str();
+}
+
+void add_light_options(CLI::App& command, RenderArguments& arguments) {
+  add_choice<LightChoice>(
+      command, "--lights", arguments.lights,
+      {{"auto", LightChoice::automatic}, {"scene", LightChoice::scene}, {"studio", LightChoice::studio}},
+      "The scene's lights, or three studio lights about the camera; auto: studio where the scene has none");
+  add_color(command, "--background", arguments.background, "Linear colour behind everything, instead of the scene's");
+  add_color(command, "--ambient", arguments.ambient, "Linear ambient light, instead of the scene's");
+  command
+      .add_option("--environment", arguments.environment,
+                  "Equirectangular image (.hdr, .exr) that lights the scene and is its background")
+      ->type_name("FILE");
+  command
+      .add_option("--environment-rotation", arguments.environment_rotation,
+                  "Turns it about the vertical axis, seen from above against the clock")
+      ->type_name("DEG")
+      ->check(finite())
+      ->default_str("0");
+  command.add_option("--environment-strength", arguments.environment_strength, "Multiplies its light")
+      ->type_name("X")
+      ->check(finite())
+      ->check(CLI::NonNegativeNumber.description(""))
+      ->default_str("1");
+}
+
 void add_render_options(CLI::App& command, RenderArguments& arguments) {
   command.add_option("SCENE", arguments.scene, "glTF 2.0 file (.gltf or .glb)")->type_name("")->required();
   const auto group = [&](const char* name) { command.option_defaults()->group(name); };
   group("File"), add_file_options(command, arguments);
   group("Picture"), add_picture_options(command, arguments);
-  group("Light"), add_light_options(command, arguments);
+  group("Light"), add_light_options(command, arguments), add_display_options(command, arguments);
   group("Run"), add_run_options(command, arguments);
   group("Limits"), add_limit_options(command, arguments.limits);
 }

@@ -42,6 +42,11 @@ struct RenderArguments {
 /// Fills `arguments`, which must live as long as `command`, when the command line is parsed.
 void add_render_options(CLI::App& command, RenderArguments& arguments);
 
+/// The groups of them that other commands share: what is seen from where, how far it is followed, what lights it.
+void add_view_options(CLI::App& command, RenderArguments& arguments);
+void add_tracing_options(CLI::App& command, RenderArguments& arguments);
+void add_light_options(CLI::App& command, RenderArguments& arguments);
+
 /// --size, whose default `options` holds; it must live as long as `command`.
 void add_size_option(CLI::App& command, RenderOptions& options);
 

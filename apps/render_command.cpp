@@ -2,15 +2,12 @@
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
-#include <tbb/parallel_invoke.h>
 
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "accel/accelerated_scene.h"
 #include "accel/baking.h"
@@ -19,12 +16,10 @@
 #include "apps/peak_memory.h"
 #include "apps/pick_camera.h"
 #include "apps/picture_metadata.h"
+#include "apps/prepare_scene.h"
 #include "apps/render_arguments.h"
 #include "core/error.h"
-#include "core/fork_join.h"
-#include "loaders/environment_file.h"
 #include "loaders/gltf_file.h"
-#include "loaders/image_decode.h"
 #include "renderer/framing.h"
 
 namespace alhazen {
@@ -33,8 +28,6 @@ namespace {
 constexpr double kClippedShareToMention = 0.1;
 
 RenderControl g_control;  // lives as long as the program, as the signal handler wants
-
-void print_warning(const std::string& text) { std::fprintf(stderr, "warning: %s\n", text.c_str()); }
 
 /// Seconds since the last call, or since it was made.
 class Stopwatch {
@@ -51,47 +44,6 @@ class Stopwatch {
 struct PhaseSeconds {
   double load = 0, build = 0, render = 0, write = 0;
 };
-
-/// The environment of the command line.
-Environment environment(const RenderArguments& arguments) {
-  Environment environment = load_environment(arguments.environment);
-  const double angle = double(arguments.environment_rotation) * std::numbers::pi / 180;
-  const float c = float(std::cos(angle)), s = float(std::sin(angle));
-  environment.environment_from_world = {{c, 0, s}, {0, 1, 0}, {-s, 0, c}, {}};
-  environment.strength = arguments.environment_strength;
-  return environment;
-}
-
-void set_up_lights(Scene& scene, const Camera& camera, const RenderArguments& arguments) {
-  if (arguments.ambient) scene.ambient = *arguments.ambient, scene.has_ambient = true;
-  if (arguments.background) scene.background = *arguments.background, scene.has_background = true;
-  if (arguments.environment.empty())
-    scene.environment.reset();  // the studio of the frame before
-  else if (!scene.environment)
-    scene.environment = environment(arguments);
-  const bool unlit = scene.lights.empty() && !scene.has_ambient && !scene.environment;
-  if (arguments.lights == LightChoice::studio) scene.lights.clear();
-  if (arguments.lights == LightChoice::studio || (arguments.lights == LightChoice::automatic && unlit))
-    add_studio_lights(scene, camera);
-}
-
-/// Builds the hierarchies while the textures are decoded, if they are not yet.
-std::unique_ptr<AcceleratedScene> build(LoadedScene& loaded, const SurfaceFilter& filter, const BuildOptions& options) {
-  std::unique_ptr<AcceleratedScene> accelerated;
-  const auto build_scene = [&] {
-    accelerated = std::make_unique<AcceleratedScene>(loaded.scene.geometry, filter, options);
-  };
-  if (loaded.encoded.empty()) return build_scene(), std::move(accelerated);
-  std::vector<TextureImage> images;
-  {
-    const ForkJoin order;
-    tbb::parallel_invoke(order.task(build_scene), order.task([&] {
-      images = decode_images(std::move(loaded.encoded), print_warning, *loaded.budget);
-    }));
-  }
-  loaded.scene.images = std::move(images);
-  return accelerated;
-}
 
 ProgressStyle style_of(const RenderArguments& arguments) {
   return arguments.quiet ? ProgressStyle::none : arguments.progress;
@@ -241,7 +193,7 @@ int render_still(const RenderArguments& arguments, Stage& stage, std::optional<i
 
   std::vector<Opacity> opacity;
   const SurfaceFilter filter = surface_filter(scene, opacity);
-  const auto accelerated = build(stage.loaded, filter, {.threads = threads, .watertight = arguments.watertight});
+  const auto accelerated = build_scene(stage.loaded, filter, {.threads = threads, .watertight = arguments.watertight});
   stage.loading.reset();
   seconds.build = watch.lap();
 

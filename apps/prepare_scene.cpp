@@ -1,0 +1,78 @@
+#include "apps/prepare_scene.h"
+
+#include <tbb/parallel_invoke.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "accel/baking.h"
+#include "apps/pick_camera.h"
+#include "core/fork_join.h"
+#include "loaders/environment_file.h"
+#include "loaders/gltf_file.h"
+#include "loaders/image_decode.h"
+
+namespace alhazen {
+namespace {
+
+/// The environment of the command line.
+Environment environment(const RenderArguments& arguments) {
+  Environment environment = load_environment(arguments.environment);
+  const double angle = double(arguments.environment_rotation) * std::numbers::pi / 180;
+  const float c = float(std::cos(angle)), s = float(std::sin(angle));
+  environment.environment_from_world = {{c, 0, s}, {0, 1, 0}, {-s, 0, c}, {}};
+  environment.strength = arguments.environment_strength;
+  return environment;
+}
+
+LoadedScene load(const RenderArguments& arguments) {
+  const auto budget = std::make_shared<LoadBudget>(arguments.limits);
+  GltfFile file(arguments.scene, print_warning, arguments.choice, arguments.time, budget);
+  LoadedScene loaded = file.load(arguments.time.time.value_or(0));
+  bake_single_instances(loaded.scene.geometry, file.moving_meshes());
+  return loaded;
+}
+
+}  // namespace
+
+void print_warning(const std::string& text) { std::fprintf(stderr, "warning: %s\n", text.c_str()); }
+
+void set_up_lights(Scene& scene, const Camera& camera, const RenderArguments& arguments) {
+  if (arguments.ambient) scene.ambient = *arguments.ambient, scene.has_ambient = true;
+  if (arguments.background) scene.background = *arguments.background, scene.has_background = true;
+  if (arguments.environment.empty())
+    scene.environment.reset();  // the studio of the frame before
+  else if (!scene.environment)
+    scene.environment = environment(arguments);
+  const bool unlit = scene.lights.empty() && !scene.has_ambient && !scene.environment;
+  if (arguments.lights == LightChoice::studio) scene.lights.clear();
+  if (arguments.lights == LightChoice::studio || (arguments.lights == LightChoice::automatic && unlit))
+    add_studio_lights(scene, camera);
+}
+
+std::unique_ptr<AcceleratedScene> build_scene(LoadedScene& loaded, const SurfaceFilter& filter,
+                                              const BuildOptions& options) {
+  std::unique_ptr<AcceleratedScene> accelerated;
+  const auto build = [&] { accelerated = std::make_unique<AcceleratedScene>(loaded.scene.geometry, filter, options); };
+  if (loaded.encoded.empty()) return build(), std::move(accelerated);
+  std::vector<TextureImage> images;
+  {
+    const ForkJoin order;
+    tbb::parallel_invoke(order.task(build), order.task([&] {
+      images = decode_images(std::move(loaded.encoded), print_warning, *loaded.budget);
+    }));
+  }
+  loaded.scene.images = std::move(images);
+  return accelerated;
+}
+
+PreparedScene::PreparedScene(const RenderArguments& arguments) : loaded(load(arguments)) {
+  const RenderOptions& options = arguments.options;
+  camera = pick_camera(loaded.scene, arguments.camera, double(options.width) / options.height);
+  set_up_lights(loaded.scene, camera, arguments);
+  const SurfaceFilter filter = surface_filter(loaded.scene, opacity);
+  accelerated = build_scene(loaded, filter, {.threads = options.threads, .watertight = arguments.watertight});
+}
+
+}  // namespace alhazen
