@@ -10,6 +10,7 @@
 #include <string>
 
 #include "apps/limit_options.h"
+#include "apps/print.h"
 #include "core/error.h"
 #include "loaders/gltf_examine.h"
 #include "loaders/gltf_file.h"
@@ -180,8 +181,7 @@ int run_info(const std::string& file, const LoadLimits& limits, bool as_json) {
   const Json info = info_json(file, warn, std::make_shared<LoadBudget>(limits));
   examine_gltf(file, warn, std::make_shared<LoadBudget>(limits));
   const std::string text = as_json ? info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : info_text(info);
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-    throw WriteError("standard output", "cannot be written");
+  print(text);
   return int(ExitStatus::done);
 }
 

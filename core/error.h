@@ -12,7 +12,7 @@ enum class ExitStatus : int {
   usage = 2,
   input = 3,
   output = 4,
-  regressed = 6,  // against earlier measurements
+  regressed = 6,  // against earlier measurements or pictures
   interrupted = 130,
   terminated = 143
 };

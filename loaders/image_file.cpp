@@ -116,16 +116,6 @@ void write_pixels(const fs::path& file, const OIIO::ImageSpec& spec, OIIO::TypeD
 
 uint8_t to_byte(float v) { return uint8_t(std::lround(255.0f * std::clamp(std::isnan(v) ? 0.0f : v, 0.0f, 1.0f))); }
 
-/// A colour for every node below 2^24, no two the same; black for none alone.
-std::array<uint8_t, 3> node_color(uint32_t node) {
-  constexpr uint32_t mask = 0xffffff;
-  uint32_t h = (node + 1) & mask;  // each step is a bijection of 24 bits that keeps 0
-  h = (h * 0x9e3779u) & mask, h ^= h >> 12;
-  h = (h * 0x85ebcbu) & mask, h ^= h >> 11;
-  h = (h * 0xc2b2afu) & mask, h ^= h >> 12;
-  return {uint8_t(h >> 16), uint8_t(h >> 8), uint8_t(h)};
-}
-
 /// f(pixel in, index of the pixel), rows in parallel.
 template <class T, class F>
 void for_each_pixel(const PixelBuffer<T>& image, F f) {
@@ -179,6 +169,15 @@ std::string list(const std::vector<std::string>& names) {
 }
 
 }  // namespace
+
+std::array<uint8_t, 3> node_color(uint32_t node) noexcept {
+  constexpr uint32_t mask = 0xffffff;
+  uint32_t h = (node + 1) & mask;  // each step is a bijection of 24 bits that keeps 0
+  h = (h * 0x9e3779u) & mask, h ^= h >> 12;
+  h = (h * 0x85ebcbu) & mask, h ^= h >> 11;
+  h = (h * 0xc2b2afu) & mask, h ^= h >> 12;
+  return {uint8_t(h >> 16), uint8_t(h >> 8), uint8_t(h)};
+}
 
 ImageFormat image_format(const fs::path& file) { return format_of(*create_output(file)); }
 

@@ -1,6 +1,7 @@
 // Pictures to files, in the format that the file's name asks for.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -47,7 +48,10 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 void write_image(const std::filesystem::path& file, const ColorImage& image, const ImageEncoding& encoding,
                  const Metadata& metadata);
 
-/// OpenEXR: the 32-bit UINT channels node, primitive, material. Other formats: a distinct, stable colour for each node.
+/// What stands for a node in 8 bits, sRGB: a colour for every node below 2^24, no two the same; black for none alone.
+[[nodiscard]] std::array<uint8_t, 3> node_color(uint32_t node) noexcept;
+
+/// OpenEXR: the 32-bit UINT channels node, primitive, material. Other formats: `node_color`.
 void write_image(const std::filesystem::path& file, const IdImage& image, const ImageEncoding& encoding,
                  const Metadata& metadata);
 

@@ -155,7 +155,7 @@ class CommandLine(unittest.TestCase):
             (["render", SCENE, "-o", "a.png", "--integrator", "whited"], "did you mean 'whitted'?"),
             (["render", SCENE, "-o", self.file("a.png"), "--camera", "frnt"], "the scene has 0 'front'; did you mean"),
             (["info", SCENE, "--jsn"], "did you mean '--json'?"),
-            ([], "expected a command: render, info, sheet, bench"),
+            ([], "expected a command: render, info, signature"),
         ):
             result = run(*arguments)
             self.assertEqual(result.returncode, 2, arguments)
@@ -235,8 +235,34 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(run("sheet", self.folder.name + "/absent", "-o", self.file("s.png")).returncode, 3)
         self.assertEqual(run("sheet", self.file("models"), "-o", self.file("x/s.png")).returncode, 4)
 
+    def test_a_signature_names_what_is_seen_and_differs_from_another(self):
+        picture, ids = self.file("objects.png"), self.file("ids.exr")
+        result = run("signature", SCENE, "-o", ids, "--size", "96x54", "--json")
+        report = json.loads(result.stdout)
+        self.assertEqual(result.returncode, 0)
+        self.assertEqual(sum(o["pixels"] for o in report["objects"]) + report["background"], 96 * 54)
+        self.assertEqual([o["name"] for o in report["objects"]], ["floor", "glass", "mirror", "ring", "pearl"])
+        same = run("signature", SCENE, "--diff", ids, "-o", picture, "--legend")
+        self.assertEqual((same.returncode, same.stdout.splitlines()[-1]), (0, "the same as " + ids))
+        self.assertTrue(os.path.exists(picture))
+        other = run("signature", SCENE, "--diff", ids, "--lights", "scene")
+        self.assertEqual(other.returncode, 2)
+        ring = run("render", SCENE, "-o", self.file("a.exr"), "--size", "96x54", "--quiet")
+        self.assertEqual(ring.returncode, 0)
+        no_signature = run("signature", SCENE, "--diff", self.file("a.exr"))
+        self.assertEqual(no_signature.returncode, 3)
+        self.assertRegex(no_signature.stderr, "is no scene signature")
+        with open(SCENE) as file:
+            scene = json.load(file)
+        scene["nodes"][3]["translation"][0] += 0.5
+        with open(self.file("moved.gltf"), "w") as file:
+            json.dump(scene, file)
+        moved = run("signature", self.file("moved.gltf"), "--diff", ids, "--json", "-o", picture)
+        self.assertEqual(moved.returncode, 6)
+        self.assertGreater(json.loads(moved.stdout)["diff"]["nodes"], 5)
+
     def test_each_help_has_an_example_and_fits(self):
-        for command in ([], ["render"], ["info"], ["sheet"], ["bench"], ["crosscheck"], ["make"], ["convert"]):
+        for command in ([], ["render"], ["info"], ["signature"], ["sheet"], ["bench"], ["crosscheck"], ["make"], ["convert"]):
             text = run(*command, "--help").stdout
             self.assertIn("Example", text)
             self.assertLessEqual(max(map(len, text.splitlines())), 100)
