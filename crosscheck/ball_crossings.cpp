@@ -64,7 +64,12 @@ class BodyLine {
     return list;
   }
 
-  [[nodiscard]] bool inside_wall(const B& t) const { return !parts_.wall || sign((a_ * t + B(2.0) * b_) * t + c_) < 0; }
+  [[nodiscard]] bool inside_wall(const B& t) const {
+    if (!parts_.wall) return true;
+    const int s = sign((a_ * t + B(2.0) * b_) * t + c_);
+    if (s == 0) throw InDoubt();  // between its roots: the line runs within the wall
+    return s < 0;
+  }
   [[nodiscard]] bool inside_box(const B& t) const {
     if (!parts_.planes) return true;
     for (int axis = 0; axis < 3; ++axis) {

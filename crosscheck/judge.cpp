@@ -5,17 +5,25 @@
 namespace alhazen::crosscheck {
 namespace {
 
-constexpr double kGrazing = 1e-9;  // a side is not judged where the ray runs flatter than this
+constexpr double kGrazing = 1e-9;           // a side is not judged where the ray runs flatter than this
+constexpr double kLeastGradient = 0x1p-22;  // of its terms: what is less has lost too many of their bits
+constexpr double kGradientAngle = 0x1p-28;  // radians: by how much a dozen roundings of the terms turn the rest
 
 Vec3d face_normal(int face) {
   const double outward = face & 1 ? 1 : -1;
   return face < 2 ? Vec3d{outward, 0, 0} : face < 4 ? Vec3d{0, outward, 0} : Vec3d{0, 0, outward};
 }
 
-/// The gradient of a body's wall.
+/// The gradient of a body's wall, to kGradientAngle; zero where its terms cancel too far for that: there is none at an
+/// apex, and beside one the roundings of the terms would turn it.
 Vec3d wall_normal(const QuadricBody<double>& q, const Vec3d& p) {
-  return {q.a * p.x + q.d * p.y + q.e * p.z + q.g, q.d * p.x + q.b * p.y + q.f * p.z + q.h,
-          q.e * p.x + q.f * p.y + q.c * p.z + q.i};
+  const auto gradient = [](const Vec3d& rows_x, const Vec3d& rows_y, const Vec3d& rows_z, const Vec3d& at,
+                           const Vec3d& linear) {
+    return Vec3d{dot(rows_x, at), dot(rows_y, at), dot(rows_z, at)} + linear;
+  };
+  const Vec3d x{q.a, q.d, q.e}, y{q.d, q.b, q.f}, z{q.e, q.f, q.c}, linear{q.g, q.h, q.i};
+  const Vec3d n = gradient(x, y, z, p, linear), terms = gradient(abs(x), abs(y), abs(z), abs(p), abs(linear));
+  return max_component(abs(n)) > kLeastGradient * max_component(terms) ? n : Vec3d{};
 }
 
 template <class S>
@@ -99,7 +107,7 @@ struct Judge::Impl {
     if (const auto* triangle = std::get_if<Triangle>(&subject.surface)) weigh(*triangle, p_object, j);
     const double d_size = size(line.direction), across = dot(j.normal_object, d / d_size);
     const double off = std::abs(double(t)) * d_size * 0x1p-22 + size(line.origin) * 1e-13;
-    j.normal_tolerance = 1e-9;
+    j.normal_tolerance = kGradientAngle;
     for (const Vec3d& step : {Vec3d{off, 0, 0}, Vec3d{0, off, 0}, Vec3d{0, 0, off}}) {
       const Vec3d turned = unit_normal(subject.surface, p_object + step, j.face);
       j.normal_tolerance = std::max(j.normal_tolerance, 3 * length(turned - j.normal_object));
