@@ -38,9 +38,10 @@ struct AcceleratedScene::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   bool has_instances = false;
-  bool has_filters = false;  // surfaces that let some light through
-  int width = 4;             // of coherent waves' packets
-  int incoherent_width = 4;  // of others'
+  float reach = embree::kReach;  // of rays' coordinates
+  bool has_filters = false;      // surfaces that let some light through
+  int width = 4;                 // of coherent waves' packets
+  int incoherent_width = 4;      // of others'
   std::atomic<uint64_t> bytes{0};
 
   ~Impl() {
@@ -111,14 +112,13 @@ struct AcceleratedScene::Traversal {
       ray.time[i] = 0, ray.mask[i] = embree::kEveryRay, ray.flags[i] = 0, ray.id[i] = unsigned(first) + unsigned(i);
   }
 
-  /// -1 for the lanes that hold rays that traversal can take, else 0: one component beyond its range ends the program
-  /// where Embree's assertions are on. Such rays, and those that are not numbers, hit nothing.
+  /// -1 for the lanes that hold rays that traversal can take, else 0: those out of reach, and those that are not
+  /// numbers, hit nothing.
   template <int width>
-  static void choose_lanes(const RayWave& wave, size_t first, int lanes, int* valid) {
-    constexpr float kReach = 1.8e18f;
+  static void choose_lanes(const Impl& impl, const RayWave& wave, size_t first, int lanes, int* valid) {
     const auto within = [&](const Vec3Lanes& v) {
       const auto below = [&](const Lanes<float>& row) {
-        return absolute(FloatLanes<width>(&row[first], std::experimental::element_aligned)) < kReach;
+        return absolute(FloatLanes<width>(&row[first], std::experimental::element_aligned)) < impl.reach;
       };
       return below(v.x) && below(v.y) && below(v.z);
     };
@@ -134,7 +134,7 @@ struct AcceleratedScene::Traversal {
       const int lanes = int(std::min(size_t(width), n - first));
       alignas(64) typename embree::Packets<width>::RayHit packet;
       alignas(64) int valid[width];
-      choose_lanes<width>(wave, first, lanes, valid);
+      choose_lanes<width>(impl, wave, first, lanes, valid);
       for (int i = 0; i < width; ++i) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
       load_rays(wave, first, width, packet.ray);
       embree::intersect<width>(valid, impl.scene, query, packet);
@@ -160,7 +160,7 @@ struct AcceleratedScene::Traversal {
       const int lanes = int(std::min(size_t(width), n - first));
       alignas(64) typename embree::Packets<width>::Ray packet;
       alignas(64) int valid[width];
-      choose_lanes<width>(wave, first, lanes, valid);
+      choose_lanes<width>(impl, wave, first, lanes, valid);
       load_rays(wave, first, width, packet);
       embree::occluded<width>(valid, impl.scene, query, packet);
       for (int i = 0; i < lanes; ++i)
@@ -183,7 +183,7 @@ struct AcceleratedScene::Traversal {
     for (size_t k = 0; k < packets.size(); ++k) {
       Packet& packet = packets[k];
       const size_t first = k * width;
-      choose_lanes<width>(wave, first, int(std::min(size_t(width), wave.size() - first)), packet.valid);
+      choose_lanes<width>(impl, wave, first, int(std::min(size_t(width), wave.size() - first)), packet.valid);
       for (int i = 0; i < width; ++i)
         packet.rays.hit.geomID[i] = packet.rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
       load_rays(wave, first, width, packet.rays.ray);
@@ -318,13 +318,16 @@ AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter
     }
     impl.has_instances = true;
     const auto id = uint32_t(impl.top.size());
-    if (const uint32_t count = group_size(geometry, object); count >= kLeastInstanceGroup) {
+    const float reach = reach_around_instance(instance.world_from_object);
+    const uint32_t alike = group_size(geometry, object), count = alike >= kLeastInstanceGroup ? alike : 1;
+    if (count > 1 || reach == 0) {
       impl.instance_groups.push_back(std::make_unique<InstanceGroup>(InstanceGroup{&instance, object, count, shared}));
       Traversal::attach_instances(impl, id, *impl.instance_groups.back());
       impl.top.push_back({TopEntry::Kind::instances, object, 0});
       object += count - 1;
       continue;
     }
+    impl.reach = std::min(impl.reach, reach);
     Traversal::attach_instance(impl, id, shared, instance.world_from_object);
     impl.top.push_back({TopEntry::Kind::instance, object, 0});
   }

@@ -170,6 +170,10 @@ inline void accept(const RTCOccludedFunctionNArguments* arguments, unsigned lane
 
 inline constexpr unsigned kEveryRay = ~0u;  // mask of all our rays and geometries
 
+/// What each coordinate of a ray's origin and direction must stay below, in every space that it is traversed in: one
+/// beyond ends the program where Embree's assertions are on.
+inline constexpr float kReach = 1.8e18f;
+
 /// A geometry that every ray sees. Embree 3 gives new geometries all mask bits, Embree 4 the lowest one alone.
 [[nodiscard]] inline RTCGeometry new_geometry(RTCDevice device, RTCGeometryType type) {
   RTCGeometry geometry = rtcNewGeometry(device, type);

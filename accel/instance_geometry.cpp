@@ -25,7 +25,10 @@ void write_bounds(const RTCBoundsFunctionArguments* args) {
   *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
 }
 
+bool within_reach(const Vec3f& v) { return max_component(abs(v)) < embree::kReach; }
+
 /// The lanes of a callback's packet in the space of the mesh; the direction is not made unit length, so t is shared.
+/// Rays out of reach there miss.
 template <int width, class Ray>
 void enter(const Affine3f& object_from_world, RTCRayN* from, unsigned n, const int* active, int* valid, Ray& ray) {
   for (unsigned i = 0; i < unsigned(width); ++i) valid[i] = i < n ? active[i] : 0;
@@ -35,6 +38,10 @@ void enter(const Affine3f& object_from_world, RTCRayN* from, unsigned n, const i
         object_from_world, Vec3f{RTCRayN_org_x(from, n, i), RTCRayN_org_y(from, n, i), RTCRayN_org_z(from, n, i)});
     const Vec3f d = transform_vector(
         object_from_world, Vec3f{RTCRayN_dir_x(from, n, i), RTCRayN_dir_y(from, n, i), RTCRayN_dir_z(from, n, i)});
+    if (!within_reach(o) || !within_reach(d)) {
+      valid[i] = 0;
+      continue;
+    }
     ray.org_x[i] = o.x, ray.org_y[i] = o.y, ray.org_z[i] = o.z;
     ray.dir_x[i] = d.x, ray.dir_y[i] = d.y, ray.dir_z[i] = d.z;
     ray.tnear[i] = RTCRayN_tnear(from, n, i), ray.tfar[i] = RTCRayN_tfar(from, n, i);
@@ -83,8 +90,8 @@ void intersect_packet(const RTCIntersectFunctionNArguments* args) {
     embree::intersect<width>(valid, group.mesh, query_of(args), packet);
   }
   for (unsigned i = 0; i < n; ++i) {
-    if (!valid[i]) continue;
-    if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
+    if (!args->valid[i]) continue;
+    if (!valid[i] || packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
       embree::reject(args, i);
       continue;
     }
@@ -107,8 +114,8 @@ void occlude_packet(const RTCOccludedFunctionNArguments* args) {
     embree::occluded<width>(valid, group.mesh, query_of(args), packet);
   }
   for (unsigned i = 0; i < args->N; ++i) {
-    if (!valid[i]) continue;
-    if (packet.tfar[i] < 0)
+    if (!args->valid[i]) continue;
+    if (valid[i] && packet.tfar[i] < 0)
       embree::accept(args, i);
     else
       embree::reject(args, i);
@@ -124,6 +131,16 @@ void occlude(const RTCOccludedFunctionNArguments* args) {
 }
 
 }  // namespace
+
+float reach_around_instance(const Affine3d& m) {
+  constexpr double kMostMagnified = 0x1p20, kLargestScale = 0x1p40;  // cubed, a float
+  const Affine3d inverted = inverse(m);
+  const double magnified = max_component(abs(inverted.x) + abs(inverted.y) + abs(inverted.z));
+  const double scale = max_component(max(abs(m.x), max(abs(m.y), abs(m.z))));
+  const bool placed =
+      magnified <= kMostMagnified && scale <= kLargestScale && max_component(abs(inverted.origin)) < embree::kReach / 2;
+  return placed ? float(std::min<double>(embree::kReach, embree::kReach / 2 / magnified)) : 0;
+}
 
 uint32_t group_size(const Geometry& geometry, uint32_t object) {
   const auto begin = geometry.mesh_instances.begin() + ptrdiff_t(object);

@@ -10,8 +10,12 @@ namespace alhazen {
 /// From how many instances on this pays: below, Embree's own traverse a little faster.
 inline constexpr uint32_t kLeastInstanceGroup = 1024;
 
-/// Consecutive instances of one mesh. A hit in one has the mesh's geometry and primitive, and as its instance the
-/// object number with the highest bit set.
+/// How far rays may reach where Embree's own instance places a mesh so, at most embree::kReach; 0 where it cannot: it
+/// inverts the map by cofactors and determinant in floats, and carries rays into the mesh's space whatever their size.
+[[nodiscard]] float reach_around_instance(const Affine3d& world_from_object);
+
+/// Consecutive instances of one mesh, anywhere. A hit in one has the mesh's geometry and primitive, and as its instance
+/// the object number with the highest bit set.
 struct InstanceGroup {
   const MeshInstance* first;  // Geometry's, in place
   uint32_t first_object, count;

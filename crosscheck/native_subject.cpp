@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "accel/instance_geometry.h"
+
 namespace alhazen::crosscheck {
 namespace {
 
@@ -16,7 +18,7 @@ class Rounding {
   void operator()(Vec3d& v) { (*this)(v.x), (*this)(v.y), (*this)(v.z); }
   void operator()(Affine3d& m) {
     (*this)(m.x), (*this)(m.y), (*this)(m.z), (*this)(m.origin);
-    lost_ = lost_ || !is_invertible(m);
+    lost_ = lost_ || !is_invertible(m) || reach_around_instance(m) == 0;
   }
 
   void operator()(Sphere& s) { (*this)(s.radius); }

@@ -72,6 +72,54 @@ TEST(InstanceGroup, IsHitWhereItsInstancesAre) {
   }
 }
 
+/// Two tetrahedra beside each other, everything larger by 2^exponent.
+Geometry scaled_pair(int exponent) {
+  const double s = std::ldexp(1.0, exponent);
+  Geometry geometry;
+  geometry.meshes = {{"a", {tetrahedron()}}};
+  for (const double x : {-2.0, 2.0})
+    geometry.mesh_instances.push_back({0, 0, {{s, 0, 0}, {0, s, 0}, {0, 0, s}, {x * s, 0, 0}}});
+  return geometry;
+}
+
+HitWave hits_of_scaled_pair(int exponent) {
+  Rng rng(3);
+  RayWave rays;
+  rays.resize(2000);
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const Vec3f from(uniform_vector(rng, -5, 5)), to(uniform_vector(rng, -3, 3));
+    rays.set(i, {from * std::ldexp(1.0f, exponent), to - from, 0, HUGE_VALF});
+  }
+  HitWave hits;
+  AcceleratedScene(scaled_pair(exponent), {}).intersect(rays, Coherence::incoherent, hits);
+  return hits;
+}
+
+TEST(Instances, AreHitAtScalesWhoseDeterminantNoFloatHolds) {
+  const HitWave expected = hits_of_scaled_pair(0);
+  for (const int exponent : {-56, -45, -30, -20, 20, 38, 45, 56}) {
+    const HitWave hits = hits_of_scaled_pair(exponent);
+    size_t other = 0;  // rounding counts at edges
+    for (size_t i = 0; i < expected.object.size(); ++i) {
+      other += hits.object[i] != expected.object[i];
+      if (hits.object[i] != expected.object[i] || hits.object[i] == kNone) continue;
+      EXPECT_NEAR(std::ldexp(double(hits.t[i]), -exponent), expected.t[i], 1e-4);
+    }
+    EXPECT_LE(other, 2u) << "2^" << exponent;
+  }
+}
+
+TEST(Instances, AreMissedByRaysTooFarAwayForThem) {
+  for (const int exponent : {-56, -20, 0}) {
+    RayWave rays;
+    rays.resize(1);
+    rays.set(0, {{0, 1e18f, 0}, {0, -1, 0}, 0, HUGE_VALF});
+    HitWave hits;
+    AcceleratedScene(scaled_pair(exponent), {}).intersect(rays, Coherence::coherent, hits);
+    EXPECT_EQ(hits.object[0], kNone) << "2^" << exponent;
+  }
+}
+
 TEST(InstanceGroup, SurfacesWithHolesAndLightThroughThemAreSeenByTheirInstance) {
   const Geometry grouped = swarm(kCount, true), single = swarm(kCount, false);
   for (const Opacity kind : {Opacity::cutout, Opacity::transparent}) {
