@@ -14,6 +14,7 @@
 #include "renderer/camera_cell.h"
 #include "renderer/camera_ray.h"
 #include "renderer/surface.h"
+#include "renderer/trace_observer.h"
 #include "renderer/whitted.h"
 
 namespace alhazen {
@@ -58,6 +59,7 @@ struct CellWorker {
   const RenderOptions& options;
   RenderControl& control;
   RenderResult& result;
+  int x0 = 0, y0 = 0;  // of the result in the picture
 
   /// Fills the cell's pixels; false where it was stopped before they were finished, and left them empty.
   [[nodiscard]] bool trace(const Cell& cell, WaveArena& arena) const {
@@ -105,6 +107,7 @@ struct CellWorker {
       arena.clock.enter(Phase::generation);
       radiance.fill(Rgb(0.0f)), background.fill(0.0f);
       push_camera_rays(camera, options, cell, uint32_t(sample), arena.pending);
+      if (arena.observer) arena.observer->begin_sample(sample, arena.pending);
       trace_whitted(scene, accelerated, options, arena, radiance.data(), background.data());
       arena.clock.enter(Phase::film);
       for (size_t p = 0; p < radiance.size(); ++p) {
@@ -133,10 +136,19 @@ struct CellWorker {
   }
 
   template <class T>
-  static T* pixel_at(PixelBuffer<T>& image, const Cell& cell, uint32_t p) {
-    return image.at(cell.x0 + int(p % kCellSize), cell.y0 + int(p / kCellSize));
+  T* pixel_at(PixelBuffer<T>& image, const Cell& cell, uint32_t p) const {
+    return image.at(cell.x0 - x0 + int(p % kCellSize), cell.y0 - y0 + int(p / kCellSize));
   }
 };
+
+Cell cell_at(int cx, int cy, const RenderOptions& options) {
+  return {cx * kCellSize, cy * kCellSize, std::min((cx + 1) * kCellSize, options.width),
+          std::min((cy + 1) * kCellSize, options.height)};
+}
+
+ColorImage empty_picture(int width, int height) {
+  return {width, height, {"R", "G", "B", "A"}, std::vector<float>(size_t(width) * size_t(height) * 4, 0.0f)};
+}
 
 }  // namespace
 
@@ -154,7 +166,7 @@ RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, con
     result.ids = {
         options.width, options.height, {"node", "primitive", "material"}, std::vector<uint32_t>(pixels * 3, kNone)};
   } else {
-    result.color = {options.width, options.height, {"R", "G", "B", "A"}, std::vector<float>(pixels * 4, 0.0f)};
+    result.color = empty_picture(options.width, options.height);
   }
   const CellWorker worker{scene, accelerated, camera, options, control, result};
   const int cells_x = (options.width + kCellSize - 1) / kCellSize,
@@ -171,8 +183,7 @@ RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, con
       const int cx0 = tile % tiles_x * side, cy0 = tile / tiles_x * side;
       for (int cy = cy0; cy < std::min(cy0 + side, cells_y); ++cy)
         for (int cx = cx0; cx < std::min(cx0 + side, cells_x); ++cx) {
-          const Cell cell{cx * kCellSize, cy * kCellSize, std::min((cx + 1) * kCellSize, options.width),
-                          std::min((cy + 1) * kCellSize, options.height)};
+          const Cell cell = cell_at(cx, cy, options);
           if (!worker.trace(cell, arenas.local())) return;
           control.pixels_done += uint64_t(cell.x1 - cell.x0) * uint64_t(cell.y1 - cell.y0);
         }
@@ -182,6 +193,18 @@ RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, con
   });
   result.complete = control.pixels_done == pixels;
   return result;
+}
+
+CellPicture render_cell(const Scene& scene, const AcceleratedScene& accelerated, const Camera& camera,
+                        const RenderOptions& options, RenderControl& control, int x, int y, TraceObserver& observer) {
+  const Cell cell = cell_at(x / kCellSize, y / kCellSize, options);
+  RenderResult result;
+  result.color = empty_picture(cell.x1 - cell.x0, cell.y1 - cell.y0);
+  WaveArena arena;
+  arena.observer = &observer;
+  const CellWorker worker{scene, accelerated, camera, options, control, result, cell.x0, cell.y0};
+  if (!worker.trace(cell, arena)) return {};
+  return {cell.x0, cell.y0, std::move(result.color)};
 }
 
 }  // namespace alhazen

@@ -53,6 +53,20 @@ struct RenderResult {
 [[nodiscard]] RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, const Camera& camera,
                                   const RenderOptions& options, RenderControl& control);
 
+class TraceObserver;
+
+/// The cell of pixels that holds (x, y), and where it lies in the picture.
+struct CellPicture {
+  int x0 = 0, y0 = 0;
+  ColorImage color;  // empty where it was stopped
+};
+
+/// Traces that cell alone, by Whitted's integrator, as `render` does: the same rays in the same packets, to the same
+/// bits; and tells `observer` of all of them, sample by sample.
+[[nodiscard]] CellPicture render_cell(const Scene& scene, const AcceleratedScene& accelerated, const Camera& camera,
+                                      const RenderOptions& options, RenderControl& control, int x, int y,
+                                      TraceObserver& observer);
+
 /// A three-quarter view of everything placed, as large as fits, for the aspect ratio width / height.
 [[nodiscard]] Camera framing_camera(const Geometry& geometry, double aspect);
 

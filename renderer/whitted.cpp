@@ -6,6 +6,7 @@
 #include "materials/fresnel.h"
 #include "materials/metallic_roughness.h"
 #include "materials/phong.h"
+#include "renderer/trace_observer.h"
 
 namespace alhazen {
 namespace {
@@ -33,6 +34,20 @@ Vec3f world_from_tangent(const SurfacePoint& surface, const Vec3f& m) {
 
 bool has_tangent(const SurfacePoint& surface) { return dot(surface.tangent_world, surface.tangent_world) > 0; }
 
+// What is left of them when an observer asks for the highlights alone.
+
+PhongBsdf without_diffuse(PhongBsdf bsdf) {
+  bsdf.diffuse = Rgb(0.0f);
+  return bsdf;
+}
+
+MetallicRoughnessBsdf without_diffuse(MetallicRoughnessBsdf bsdf) {
+  bsdf.transmission = 1;  // takes its share of the diffuse light alone
+  return bsdf;
+}
+
+/// `observed`: whether the arena's observer is told. Nothing of it is left in the code where not.
+template <bool observed>
 class Whitted {
  public:
   Whitted(const Scene& scene, const AcceleratedScene& accelerated, const RenderOptions& options, WaveArena& arena,
@@ -54,7 +69,10 @@ class Whitted {
       arena_.clock.enter(Phase::traversal);
       accelerated_.intersect(arena_.current.rays, first ? Coherence::coherent : Coherence::incoherent, arena_.hits);
       arena_.clock.enter(Phase::shading);
-      for (size_t i = 0; i < arena_.current.size(); ++i) shade(i);
+      for (size_t i = 0; i < arena_.current.size(); ++i) {
+        tell([&](TraceObserver& observer) { observer.look_at(i); });
+        shade(i);
+      }
       trace_shadows(first ? Coherence::coherent : Coherence::incoherent);
       first = false;
     }
@@ -65,15 +83,27 @@ class Whitted {
     if (arena_.log && rays.size() > 0) arena_.log->push_back(logged(kind, rays));
   }
 
+  template <class Event>
+  void tell(const Event& event) {
+    if constexpr (observed) event(*arena_.observer);
+  }
+
+  /// Adds light to a path's pixel.
+  void add(const Path& path, LightTerm term, const Rgb& light) {
+    radiance_[path.pixel] += light;
+    tell([&](TraceObserver& observer) { observer.add(term, light); });
+  }
+
   /// Moves the last rays of `pending` to `current`.
   void take_wave() {
     PathWave &from = arena_.pending, &to = arena_.current;
-    if (from.size() <= kWaveLimit) {
+    const size_t first = from.size() <= kWaveLimit ? 0 : from.size() - kWaveLimit;
+    tell([&](TraceObserver& observer) { observer.take_wave(first); });
+    if (first == 0) {
       std::swap(from, to);
       from.resize(0);
       return;
     }
-    const size_t first = from.size() - kWaveLimit;
     to.resize(0);
     for (size_t i = first; i < from.size(); ++i) to.push(from.rays.get(i), from.paths[i]);
     from.resize(first);
@@ -85,14 +115,12 @@ class Whitted {
     const Rayf ray = arena_.current.rays.get(i);
     const bool view = path.kind == RayKind::camera || path.kind == RayKind::straight;
     if (hits.object[i] == kNone) {
-      if (options_.transparent && view)
-        background_[path.pixel] += path.weight.r;  // a product of (1 - alpha): grey
-      else
-        radiance_[path.pixel] += path.weight * sky(path, ray.direction);
-      return;
+      if (!options_.transparent || !view) return add_sky(path, ray.direction);
+      background_[path.pixel] += path.weight.r;  // a product of (1 - alpha): grey
+      return tell([&](TraceObserver& observer) { observer.uncover(path.weight.r); });
     }
-    SurfacePoint surface =
-        surface_point(scene_, ray, {hits.object[i], hits.part[i], hits.primitive[i]}, hits.t[i], hits.u[i], hits.v[i]);
+    const HitIds ids{hits.object[i], hits.part[i], hits.primitive[i]};
+    SurfacePoint surface = surface_point(scene_, ray, ids, hits.t[i], hits.u[i], hits.v[i]);
     const Cone cone{path.cone.width_at(hits.t[i]), path.cone.spread};
     // A slanted surface shows more of itself along one axis: the mean of both, for mip levels have no direction.
     surface.footprint = cone.width / std::sqrt(std::max(1e-3f, std::abs(dot(surface.ng_world, ray.direction))));
@@ -105,12 +133,15 @@ class Whitted {
     const bool enters = dot(n, ray.direction) < 0;
     if (!enters) n = -n;
     Shading s{surface, material, ray.direction, -ray.direction, n, enters, arriving * alpha, path, cone, {}};
+    tell([&](TraceObserver& observer) { observer.hit({ids, hits.t[i], surface, n, enters, alpha, arriving}); });
     if (bounds_body(material)) {
       s.boundary =
           cross_boundary(path.media, surface.material, dot(surface.ng_world, ray.direction) < 0, scene_.materials);
-      if (!s.boundary.seen)
+      if (!s.boundary.seen) {
+        tell([&](TraceObserver& observer) { observer.pass_unnoticed(); });
         return spawn_as(s, ray.direction,
                         {path.pixel, arriving, path.depth, path.kind, s.boundary.after, cone, path.roughness});
+      }
     }
     if (alpha < 1) {
       // A texel that is not there at all costs no depth: foliage is made of many of them.
@@ -123,10 +154,10 @@ class Whitted {
     const Rgb emitted = s.weight * emission(material, table_, inputs);
     switch (material.model) {
       case ShadingModel::unlit:
-        radiance_[path.pixel] += emitted;
+        add(path, LightTerm::emission, emitted);
         break;
       case ShadingModel::phong:
-        radiance_[path.pixel] += emitted;
+        add(path, LightTerm::emission, emitted);
         shade_phong(s, phong_bsdf(material, table_, inputs));
         break;
       case ShadingModel::metallic_roughness:
@@ -135,11 +166,16 @@ class Whitted {
   }
 
   /// What a ray sees that leaves the scene.
-  [[nodiscard]] Rgb sky(const Path& path, const Vec3f& direction) const {
-    if (!scene_.environment) return scene_.background;
+  void add_sky(const Path& path, const Vec3f& direction) {
+    if (sees_background(path)) return add(path, LightTerm::background, path.weight * scene_.background);
+    add(path, LightTerm::environment,
+        path.weight * environment_radiance(*scene_.environment, direction, path.roughness));
+  }
+
+  [[nodiscard]] bool sees_background(const Path& path) const {
+    if (!scene_.environment) return true;
     const bool view = path.kind == RayKind::camera || path.kind == RayKind::straight;
-    const bool backdrop = scene_.environment->seen ? view && scene_.has_background : path.kind != RayKind::mirror;
-    return backdrop ? scene_.background : environment_radiance(*scene_.environment, direction, path.roughness);
+    return scene_.environment->seen ? view && scene_.has_background : path.kind != RayKind::mirror;
   }
 
   /// What a white Lambertian surface reflects of the light without a place.
@@ -159,16 +195,21 @@ class Whitted {
   }
 
   void shade_phong(const Shading& s, const PhongBsdf& bsdf) {
-    radiance_[s.path.pixel] += s.weight * bsdf.ambient * ambient_light(s.n);
-    add_lights(s, [&](const Vec3f& to_light) { return reflected_light(bsdf, s.n, to_light, s.b); });
+    add(s.path, LightTerm::ambient, s.weight * bsdf.ambient * ambient_light(s.n));
+    const auto reflected = [&](const PhongBsdf& of, const Vec3f& to_light) {
+      return reflected_light(of, s.n, to_light, s.b);
+    };
+    add_lights(s, bsdf, reflected);
 
     Rgb mirror = bsdf.reflection, through = bsdf.transmission;
     const bool body = bounds_body(s.material);
     const float eta = body ? s.boundary.ior_before.g / s.boundary.ior_after.g : s.enters ? 1 / bsdf.ior : bsdf.ior;
     Vec3f refracted;
     const bool passes = max_component(through) > 0 && refract(s.d, s.n, eta, refracted);
+    const float f = bsdf.fresnel ? fresnel_dielectric(std::min(1.0f, dot(s.n, s.b)), eta) : 0.0f;
+    if (max_component(through) > 0)
+      tell([&](TraceObserver& observer) { observer.part(phong_interface(s, bsdf, f, !passes)); });
     if (bsdf.fresnel) {
-      const float f = fresnel_dielectric(std::min(1.0f, dot(s.n, s.b)), eta);
       mirror = mirror * f;
       through = through * (1 - f);
     } else if (!passes) {
@@ -178,22 +219,33 @@ class Whitted {
     if (passes) spawn(s, refracted, s.weight * through, RayKind::refracted, body ? s.boundary.after : s.path.media);
   }
 
+  static Interface phong_interface(const Shading& s, const PhongBsdf& bsdf, float fresnel, bool total) {
+    Interface interface { s.boundary.ior_before, s.boundary.ior_after, Rgb(fresnel), bsdf.fresnel, total };
+    if (!bounds_body(s.material)) (s.enters ? interface.ior_after : interface.ior_before) = Rgb(bsdf.ior);
+    return interface;
+  }
+
   void shade_metallic_roughness(const Shading& s, const MetallicRoughnessBsdf& bsdf, const Rgb& emitted) {
     const LayerFrames frames = layer_frames(s, bsdf);
     const float share = mirror_share(bsdf.roughness), coat_share = mirror_share(bsdf.clearcoat_roughness);
     const float coat = coat_reflectance(bsdf, frames.coat_n, s.b);
     const float left = layers_transmittance(bsdf, frames, s.b);
-    radiance_[s.path.pixel] += emitted * (1 - coat);
+    add(s.path, LightTerm::emission, emitted * (1 - coat));
     const DiffuseAlbedo diffuse = diffuse_albedo(bsdf, frames, s.b);
     Rgb ambient = diffuse.front * ambient_light(s.n);
     if (bsdf.diffuse_transmission > 0) ambient += diffuse.back * ambient_light(-s.n);
     // The part of the reflections that no mirror ray stands for.
     ambient += rough_reflection(s, bsdf) * (left * (1 - share));
     if (coat > 0) ambient += blurred(reflect(s.d, frames.coat_n), bsdf.clearcoat_roughness) * (coat * (1 - coat_share));
-    radiance_[s.path.pixel] += s.weight * ambient * bsdf.occlusion;
-    add_lights(s, [&](const Vec3f& to_light) { return reflected_light(bsdf, frames, to_light, s.b); });
+    add(s.path, LightTerm::ambient, s.weight * ambient * bsdf.occlusion);
+    add_lights(s, bsdf, [&](const MetallicRoughnessBsdf& of, const Vec3f& to_light) {
+      return reflected_light(of, frames, to_light, s.b);
+    });
 
     const Transmission passing = transmission(s, bsdf);
+    tell([&](TraceObserver& observer) {
+      observer.part({s.boundary.ior_before, s.boundary.ior_after, passing.fresnel, true, !passing.passes});
+    });
     const Rgb through = (Rgb(1.0f) - passing.fresnel) * bsdf.base_color;
     spawn(s, above_surface(s, reflect(s.d, frames.coat_n)), s.weight * (coat * coat_share), RayKind::mirror,
           s.path.media, bsdf.clearcoat_roughness);
@@ -285,19 +337,28 @@ class Whitted {
 
   void spawn_as(const Shading& s, const Vec3f& direction, const Path& path) {
     const float largest = max_component(path.weight);
-    if (int(path.depth) > options_.max_depth || !(largest >= options_.min_weight) || !(largest > 0)) return;
+    const bool deep = int(path.depth) > options_.max_depth;
+    if (deep || !(largest >= options_.min_weight) || !(largest > 0))
+      return tell_spawn(s, direction, path, deep ? SpawnOutcome::depth_limit : SpawnOutcome::weight_limit);
     arena_.pending.push({spawn_origin(s.surface, direction), normalize(direction)}, path);
+    tell_spawn(s, direction, path, SpawnOutcome::traced);
   }
 
-  /// Queues one shadow ray for each light whose reflected light is not 0.
-  template <class Reflected>
-  void add_lights(const Shading& s, const Reflected& reflected) {
+  void tell_spawn(const Shading& s, const Vec3f& direction, const Path& path, SpawnOutcome outcome) {
+    tell([&](TraceObserver& observer) {
+      observer.spawn({spawn_origin(s.surface, direction), normalize(direction)}, path, outcome);
+    });
+  }
+
+  /// Queues one shadow ray for each light whose reflected light is not 0; `reflected(bsdf, to_light)` says how much.
+  template <class Bsdf, class Reflected>
+  void add_lights(const Shading& s, const Bsdf& bsdf, const Reflected& reflected) {
     for (const Light& light : scene_.lights) {
       Vec3f to_light;
       float distance = std::numeric_limits<float>::infinity();
       const Rgb arriving = light_at(light, s.surface.p_world, to_light, distance);
       if (!(max_component(arriving) > 0)) continue;
-      const Rgb light_to_eye = s.weight * arriving * reflected(to_light);
+      const Rgb light_to_eye = s.weight * arriving * reflected(bsdf, to_light);
       if (!(max_component(light_to_eye) > 0)) continue;
       const size_t i = arena_.shadow.size();
       arena_.shadow.resize(i + 1), arena_.shadow_pixel.resize(i + 1), arena_.shadow_light.resize(i + 1);
@@ -309,6 +370,11 @@ class Whitted {
       }
       arena_.shadow.set(i, ray);
       arena_.shadow_pixel[i] = s.path.pixel, arena_.shadow_light[i] = light_to_eye;
+      tell([&](TraceObserver& observer) {
+        const Rgb all = reflected(bsdf, to_light), specular = reflected(without_diffuse(bsdf), to_light);
+        const auto index = uint32_t(&light - scene_.lights.data());
+        observer.ask({index, ray, distance, arriving, all - specular, specular});
+      });
       if (i + 1 == kShadowLimit) trace_shadows(Coherence::incoherent);
     }
   }
@@ -346,8 +412,12 @@ class Whitted {
     arena_.clock.enter(Phase::traversal);
     accelerated_.transmittance(arena_.shadow, coherence, arena_.visible);
     arena_.clock.enter(Phase::shading);
-    for (size_t i = 0; i < arena_.shadow.size(); ++i)
-      radiance_[arena_.shadow_pixel[i]] += arena_.shadow_light[i] * arena_.visible[i];
+    for (size_t i = 0; i < arena_.shadow.size(); ++i) {
+      const Rgb light = arena_.shadow_light[i] * arena_.visible[i];
+      radiance_[arena_.shadow_pixel[i]] += light;
+      tell([&](TraceObserver& observer) { observer.answer(i, arena_.visible[i], light); });
+    }
+    tell([&](TraceObserver& observer) { observer.answered(); });
     arena_.shadow.resize(0), arena_.shadow_pixel.resize(0), arena_.shadow_light.resize(0);
   }
 
@@ -364,7 +434,10 @@ class Whitted {
 
 void trace_whitted(const Scene& scene, const AcceleratedScene& accelerated, const RenderOptions& options,
                    WaveArena& arena, Rgb* radiance, float* background) {
-  Whitted(scene, accelerated, options, arena, radiance, background).run();
+  if (arena.observer)
+    Whitted<true>(scene, accelerated, options, arena, radiance, background).run();
+  else
+    Whitted<false>(scene, accelerated, options, arena, radiance, background).run();
 }
 
 }  // namespace alhazen

@@ -12,6 +12,8 @@
 
 namespace alhazen {
 
+class TraceObserver;
+
 /// What a ray is for. A `straight` ray continues the view of its camera ray through surfaces with alpha.
 enum class RayKind : uint8_t { camera, mirror, refracted, straight };
 
@@ -50,7 +52,8 @@ struct WaveArena {
   std::array<uint64_t, 4> rays_by_kind{};  // by RayKind
   uint64_t shadow_rays = 0;
   PhaseClock clock;
-  CellWaves* log = nullptr;  // where waves are copied to, if at all
+  CellWaves* log = nullptr;           // where waves are copied to, if at all
+  TraceObserver* observer = nullptr;  // who is told of every ray, if anybody
 };
 
 /// Follows the rays in `arena.pending` to their ends and adds their light to `radiance`, one value for each pixel of
