@@ -38,9 +38,9 @@ struct Ball {
   friend Ball operator+(const Ball& a, const Ball& b) {
     if (a.is_zero()) return b;
     if (b.is_zero()) return a;
-    const N mid = a.mid + b.mid;
+    const N sum = a.mid + b.mid;
     // A difference of equal exact numbers is exact.
-    return mid == 0 && a.rad == 0 && b.rad == 0 ? Ball() : rounded(mid, a.rad + b.rad);
+    return sum == 0 && a.rad == 0 && b.rad == 0 ? Ball() : rounded(sum, a.rad + b.rad);
   }
   friend Ball operator-(const Ball& a, const Ball& b) { return a + (-b); }
   friend Ball operator*(const Ball& a, const Ball& b) {
@@ -51,8 +51,8 @@ struct Ball {
     const double least = double(absolute(b.mid)) * (1 - 0x1p-50) - b.rad;
     if (!(least > kTiny)) throw InDoubt();
     if (a.is_zero()) return {};
-    const N mid = a.mid / b.mid;
-    return rounded(mid, (a.rad + double(absolute(mid)) * (1 + 0x1p-50) * b.rad) / least);
+    const N quotient = a.mid / b.mid;
+    return rounded(quotient, (a.rad + double(absolute(quotient)) * (1 + 0x1p-50) * b.rad) / least);
   }
 
   /// x > 0 for certain.
@@ -72,8 +72,8 @@ struct Ball {
 
   /// The nearest float, if one is nearest for certain.
   friend float to_float(const Ball& x) {
-    const N rad(x.rad + x.size() * (2 * kUnitRoundoff<N>));  // the sums are rounded
-    const auto lower = float(x.mid - rad), upper = float(x.mid + rad);
+    const N margin(x.rad + x.size() * (2 * kUnitRoundoff<N>));  // the sums are rounded
+    const auto lower = float(x.mid - margin), upper = float(x.mid + margin);
     if (!(lower == upper)) throw InDoubt();
     return lower;
   }

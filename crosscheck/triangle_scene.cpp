@@ -83,6 +83,8 @@ std::optional<float> hit_triangle(const Triangle& triangle, const Rayf& ray, con
 struct TriangleScene::Impl {
   PlacedTriangles placed;
   EmbreeScene scene{true};
+
+  explicit Impl(const PlacedTriangles& triangles) : placed(triangles) {}
 };
 
 TriangleScene::TriangleScene(std::span<const Triangle> triangles, const Affine3d& world_from_object)
