@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/bench_ladder.h"
+#include "apps/bench_plot.h"
 #include "apps/bench_report.h"
 #include "apps/render_arguments.h"
 #include "apps/sample_statistics.h"
@@ -26,18 +27,21 @@ namespace {
 
 struct BenchArguments {
   std::vector<std::string> scenes;
-  std::string ladder, json, before;
+  std::string ladder, json, plot, before;
   std::vector<int> threads;
   RenderOptions options{.width = 1024, .height = 1024}, ladder_options{.width = 160, .height = 120};
   bool has_size = false;
   int repeats = 9;
 };
 
-void write_json(const std::string& file, const nlohmann::ordered_json& json) {
+void write_text(const std::string& file, const std::string& text) {
   PartFile part(file);
-  const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   part.write({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
   part.commit();
+}
+
+std::string dumped(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 /// Frame time over that of the first number of threads.
@@ -71,7 +75,8 @@ int run_bench(const BenchArguments& arguments) {
   if (threads.empty()) threads.push_back(tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   size_t(*std::ranges::max_element(threads)));
-  if (!arguments.json.empty()) (void)PartFile(arguments.json);  // before the work is done
+  for (const std::string& file : {arguments.json, arguments.plot})
+    if (!file.empty()) (void)PartFile(file);  // before the work is done
   std::vector<FrameBench> all;
   for (const std::string& scene : scenes) {
     const std::vector<FrameBench> benches = bench_frames(scene, arguments.options, threads, arguments.repeats);
@@ -81,7 +86,8 @@ int run_bench(const BenchArguments& arguments) {
     all.insert(all.end(), benches.begin(), benches.end());
   }
   const nlohmann::ordered_json json = bench_json(all);
-  if (!arguments.json.empty()) write_json(arguments.json, json);
+  if (!arguments.json.empty()) write_text(arguments.json, dumped(json));
+  if (!arguments.plot.empty()) write_text(arguments.plot, bench_svg(all));
   if (arguments.before.empty()) return int(ExitStatus::done);
   const BenchComparison comparison = compare_benches(json, arguments.before);
   std::printf("%s", comparison.text.c_str());
@@ -122,6 +128,8 @@ Command add_bench_command(CLI::App& program) {
       ->check(CLI::Range(1, 10000).description(""))
       ->capture_default_str();
   command->add_option("--json", arguments->json, "All samples and what they were taken on")->type_name("FILE");
+  command->add_option("--plot", arguments->plot, "The same as a drawing (.svg): rays a second by kind, and scaling")
+      ->type_name("FILE");
   command
       ->add_option("--compare", arguments->before,
                    "Says which frames are slower or faster than those of an earlier --json")
@@ -136,7 +144,7 @@ Command add_bench_command(CLI::App& program) {
       "\n"
       "Examples:\n"
       "  alhazen bench scene.glb --threads 1,2,4 --json now.json\n"
-      "  alhazen bench scene.glb --compare before.json\n"
+      "  alhazen bench scene.glb --compare before.json --plot now.svg\n"
       "  alhazen bench --ladder scene.gltf --size 320x240");
   return {command, [arguments, command] {
             arguments->has_size = command->count("--size") > 0;

@@ -4,12 +4,14 @@ import json
 import os
 import pty
 import signal
+import statistics
 import struct
 import subprocess
 import sys
 import tempfile
 import time
 import unittest
+import xml.etree.ElementTree
 
 PROGRAM, SCENE = sys.argv[1], sys.argv[2]
 
@@ -169,7 +171,8 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(names, ["every primitive", "object boxes", "node tree", "image rectangles", "Embree"])
 
     def test_bench_sets_a_frame_beside_what_embree_takes(self):
-        result = run("bench", SCENE, "--size", "64x48", "--threads", "1,2", "--repeat", "6", "--json", self.file("a.json"))
+        result = run("bench", SCENE, "--size", "64x48", "--threads", "1,2", "--repeat", "6", "--json", self.file("a.json"),
+                     "--plot", self.file("a.svg"))
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertRegex(result.stdout, r"Embree alone [\d.]+ s, efficiency [\d.]+ ")
         self.assertRegex(result.stdout, r"scaling: 1 threads 1.00 x, 2 threads [\d.]+ x")
@@ -181,6 +184,14 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(sum(kind["rays"] for kind in r["bare"].values()), sum(r["rays"].values()))
             self.assertEqual([len(r[k]) for k in ("frame_s", "traversal_s", "single_ray_traversal_s")], [6, 6, 6])
             self.assertLess(0, r["efficiency"])
+        bars = {e.get("class"): float(e.get("width")) for e in xml.etree.ElementTree.parse(self.file("a.svg")).iter()
+                if e.tag.endswith("rect") and e.get("class")}
+        last = report["results"][-1]
+        rates = {name: 2 * kind["rays"] / kind["seconds_of_all_threads"] for name, kind in last["bare"].items()}
+        rates["frame"] = sum(last["rays"].values()) / statistics.median(last["frame_s"])
+        self.assertEqual(bars.keys(), rates.keys())
+        for name, rate in rates.items():
+            self.assertAlmostEqual(bars[name] / max(bars.values()), rate / max(rates.values()), places=3)
 
     def test_bench_tells_what_became_slower(self):
         bench = ["bench", SCENE, "--size", "32x24", "--threads", "1", "--repeat", "6"]
