@@ -15,6 +15,7 @@
 #include "apps/render_command.h"
 #include "apps/sheet_command.h"
 #include "apps/signature_command.h"
+#include "apps/tree_command.h"
 #include "apps/usage.h"
 #include "core/error.h"
 #include "loaders/image_file.h"
@@ -23,7 +24,7 @@ namespace alhazen {
 namespace {
 
 constexpr Command (*kCommands[])(CLI::App& program) = {
-    add_render_command, add_info_command,       add_signature_command, add_sheet_command,
+    add_render_command, add_info_command,       add_signature_command, add_tree_command,    add_sheet_command,
     add_bench_command,  add_crosscheck_command, add_make_command,      add_convert_command,
 };
 

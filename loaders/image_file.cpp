@@ -87,28 +87,41 @@ void check_readable(const fs::path& file, const fs::path& part) {
     throw WriteError(file.string(), "is not complete: " + one_line(in->geterror()));
 }
 
-/// `pixel_stride` in bytes; only the channels that `spec` has are written.
-void write_pixels(const fs::path& file, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels,
-                  OIIO::stride_t pixel_stride) {
+/// Pixels on their way to a format; `stride` in bytes, only the channels that `spec` has are written.
+struct StoredPixels {
+  OIIO::ImageSpec spec;
+  OIIO::TypeDesc type;
+  const void* pixels;
+  OIIO::stride_t stride;
+};
+
+/// To what `out` writes to under that name. `file` is what errors speak of.
+void encode(const fs::path& file, OIIO::ImageOutput& out, const fs::path& name, const StoredPixels& stored) {
+  const auto check = [&](bool ok) {
+    if (!ok) throw WriteError(file.string(), one_line(out.geterror()));
+  };
+  check(out.open(name.string(), stored.spec));
+  check(out.write_image(stored.type, stored.pixels, stored.stride));
+  check(out.close());
+}
+
+std::vector<unsigned char> encoded(const fs::path& file, OIIO::ImageOutput& out, const fs::path& name,
+                                   const StoredPixels& stored) {
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput writer(bytes);
+  if (!out.set_ioproxy(&writer)) throw WriteError(file.string(), one_line(out.geterror()));
+  encode(file, out, name, stored);
+  return bytes;
+}
+
+void write_pixels(const fs::path& file, const StoredPixels& stored) {
   PartFile part(file);
   const auto out = create_output(file);  // goes first: what it writes at its end goes with the part
-  const auto check = [&](bool ok) {
-    if (!ok) throw WriteError(file.string(), one_line(out->geterror()));
-  };
-  const auto encode = [&] {
-    check(out->open(part.path().string(), spec));
-    check(out->write_image(type, pixels, pixel_stride));
-    check(out->close());
-  };
   // Encode in memory, so that every failing write is seen; not TIFF, which OpenImageIO 2.4 does not finish there.
   if (out->supports("ioproxy") && std::string(out->format_name()) != "tiff") {
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput writer(bytes);
-    check(out->set_ioproxy(&writer));
-    encode();
-    part.write(bytes);
+    part.write(encoded(file, *out, part.path(), stored));
   } else {
-    encode();
+    encode(file, *out, part.path(), stored);
     check_readable(file, part.path());
   }
   part.commit();
@@ -143,23 +156,29 @@ void write_linear(const fs::path& file, const ImageFormat& format, const ColorIm
   const int channels = format.alpha ? 4 : 3;
   const auto spec = spec_for(format, image.width, image.height, channels,
                              encoding.half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT, encoding, metadata);
-  if (!encoding.half) return write_pixels(file, spec, OIIO::TypeDesc::FLOAT, image.pixels.data(), 4 * sizeof(float));
+  if (!encoding.half) return write_pixels(file, {spec, OIIO::TypeDesc::FLOAT, image.pixels.data(), 4 * sizeof(float)});
   std::vector<float> clamped(image.pixels);  // brighter values would become infinite
   for (float& v : clamped) v = std::clamp(v, -kLargestHalf, kLargestHalf);
-  write_pixels(file, spec, OIIO::TypeDesc::FLOAT, clamped.data(), 4 * sizeof(float));
+  write_pixels(file, {spec, OIIO::TypeDesc::FLOAT, clamped.data(), 4 * sizeof(float)});
 }
 
-void write_srgb(const fs::path& file, const ImageFormat& format, const ColorImage& image, const ImageEncoding& encoding,
-                const Metadata& metadata) {
+/// As many channels as the format keeps: 3 or 4.
+std::vector<uint8_t> srgb_pixels(const ImageFormat& format, const ColorImage& image) {
   const size_t channels = format.alpha ? 4 : 3;
   std::vector<uint8_t> bytes(size_t(image.width) * size_t(image.height) * channels);
   for_each_pixel(image, [&](const float* in, size_t pixel) {
     const auto out = srgb_bytes(in, format.alpha, format.premultiplied);
     std::copy_n(out.begin(), channels, bytes.begin() + ptrdiff_t(pixel * channels));
   });
-  const auto spec =
-      spec_for(format, image.width, image.height, int(channels), OIIO::TypeDesc::UINT8, encoding, metadata);
-  write_pixels(file, spec, OIIO::TypeDesc::UINT8, bytes.data(), OIIO::stride_t(channels));
+  return bytes;
+}
+
+void write_srgb(const fs::path& file, const ImageFormat& format, const ColorImage& image, const ImageEncoding& encoding,
+                const Metadata& metadata) {
+  const std::vector<uint8_t> bytes = srgb_pixels(format, image);
+  const int channels = format.alpha ? 4 : 3;
+  const auto spec = spec_for(format, image.width, image.height, channels, OIIO::TypeDesc::UINT8, encoding, metadata);
+  write_pixels(file, {spec, OIIO::TypeDesc::UINT8, bytes.data(), channels});
 }
 
 std::string list(const std::vector<std::string>& names) {
@@ -214,7 +233,7 @@ void write_image(const fs::path& file, const IdImage& image, const ImageEncoding
     auto spec = spec_for(format, image.width, image.height, 3, OIIO::TypeDesc::UINT32, encoding, metadata);
     spec.channelnames = image.channels;
     spec.alpha_channel = spec.z_channel = -1;
-    return write_pixels(file, spec, OIIO::TypeDesc::UINT32, image.pixels.data(), 3 * sizeof(uint32_t));
+    return write_pixels(file, {spec, OIIO::TypeDesc::UINT32, image.pixels.data(), 3 * sizeof(uint32_t)});
   }
   std::vector<uint8_t> bytes(size_t(image.width) * size_t(image.height) * 3);
   for_each_pixel(image, [&](const uint32_t* in, size_t pixel) {
@@ -222,7 +241,16 @@ void write_image(const fs::path& file, const IdImage& image, const ImageEncoding
     std::copy(color.begin(), color.end(), bytes.begin() + ptrdiff_t(pixel * 3));
   });
   const auto spec = spec_for(format, image.width, image.height, 3, OIIO::TypeDesc::UINT8, encoding, metadata);
-  write_pixels(file, spec, OIIO::TypeDesc::UINT8, bytes.data(), 3);
+  write_pixels(file, {spec, OIIO::TypeDesc::UINT8, bytes.data(), 3});
+}
+
+std::vector<uint8_t> encoded_png(const ColorImage& image) {
+  const fs::path name = "image.png";
+  const auto out = create_output(name);
+  const ImageFormat format = format_of(*out);
+  const std::vector<uint8_t> bytes = srgb_pixels(format, image);
+  const auto spec = spec_for(format, image.width, image.height, 4, OIIO::TypeDesc::UINT8, {}, {});
+  return encoded(name, *out, name, {spec, OIIO::TypeDesc::UINT8, bytes.data(), 4});
 }
 
 std::string image_library_version() {

@@ -55,6 +55,9 @@ void write_image(const std::filesystem::path& file, const ColorImage& image, con
 void write_image(const std::filesystem::path& file, const IdImage& image, const ImageEncoding& encoding,
                  const Metadata& metadata);
 
+/// The bytes of a PNG file: R, G, B, A, sRGB. Throws WriteError.
+[[nodiscard]] std::vector<uint8_t> encoded_png(const ColorImage& image);
+
 /// "OpenImageIO 2.4.7": what reads and writes images.
 [[nodiscard]] std::string image_library_version();
 

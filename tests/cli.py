@@ -272,8 +272,22 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(moved.returncode, 6)
         self.assertGreater(json.loads(moved.stdout)["diff"]["nodes"], 5)
 
+    def test_a_tree_explains_a_pixel_in_every_form(self):
+        pixel = ["tree", SCENE, "--size", "96x54", "--pixel", "39,26"]
+        self.assertRegex(run(*pixel, "--explain").stdout, "^Pixel 39,26 sees glass ")
+        self.assertRegex(run(*pixel).stdout, r"^pixel 39,26 of 96x54: .* rays\ncamera, weight 1: ")
+        for form in ("txt", "json", "svg", "html", "glb"):
+            result = run(*pixel, "-o", self.file("tree." + form))
+            self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
+        with open(self.file("tree.json")) as file:
+            self.assertGreater(len(json.load(file)["rays"]), 5)
+        self.assertEqual(run("info", self.file("tree.glb")).returncode, 0)
+        for wrong in (["--pixel", "96,0"], ["--pixel", "0,54"], ["--pixel", "-1,0"], ["--pixel", "1"], ["--sample", "1"]):
+            self.assertEqual(run(*pixel, *wrong).returncode, 2, wrong)
+        self.assertEqual(run(*pixel, "-o", self.file("tree.pdf")).returncode, 4)
+
     def test_each_help_has_an_example_and_fits(self):
-        for command in ([], ["render"], ["info"], ["signature"], ["sheet"], ["bench"], ["crosscheck"], ["make"], ["convert"]):
+        for command in ([], ["render"], ["info"], ["signature"], ["tree"], ["sheet"], ["bench"], ["crosscheck"], ["make"], ["convert"]):
             text = run(*command, "--help").stdout
             self.assertIn("Example", text)
             self.assertLessEqual(max(map(len, text.splitlines())), 100)
