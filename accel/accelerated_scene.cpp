@@ -10,6 +10,8 @@
 
 #include "accel/embree.h"
 #include "accel/instance_geometry.h"
+#include "accel/moving_shapes.h"
+#include "accel/posed.h"
 #include "accel/ray_rows.h"
 #include "accel/shape_geometry.h"
 #include "accel/triangle_geometry.h"
@@ -21,7 +23,7 @@ namespace {
 
 /// What a top-level geometry number stands for.
 struct TopEntry {
-  enum class Kind : uint8_t { none, baked_part, instance, instances, shapes } kind = Kind::none;
+  enum class Kind : uint8_t { none, baked_part, instance, instances, shapes, moving_shapes } kind = Kind::none;
   uint32_t object = kNone, part = 0;  // shapes: their group in place of the part
 };
 
@@ -30,6 +32,7 @@ struct TopEntry {
 struct AcceleratedScene::Impl {
   SurfaceFilter filter;
   std::vector<std::unique_ptr<ShapeGroup>> shape_groups;
+  std::vector<std::unique_ptr<MovingShapes>> moving_shapes;
   std::vector<std::unique_ptr<InstanceGroup>> instance_groups;
   std::vector<std::unique_ptr<TriangleGroup>> triangle_groups;  // of ours
   std::vector<TopEntry> top;
@@ -62,6 +65,8 @@ struct AcceleratedScene::Impl {
     }
     const TopEntry& entry = top[geometry];
     if (entry.kind == TopEntry::Kind::shapes) return {shape_groups[entry.part]->objects[primitive], uint32_t(u), 0};
+    if (entry.kind == TopEntry::Kind::moving_shapes)
+      return {moving_shapes[entry.part]->members[primitive].object, uint32_t(u), 0};
     return {entry.object, entry.part, primitive};
   }
 };
@@ -110,6 +115,7 @@ struct AcceleratedScene::Traversal {
     std::memcpy(ray.tnear, &wave.t_min[first], bytes), std::memcpy(ray.tfar, &wave.t_max[first], bytes);
     for (int i = 0; i < width; ++i)
       ray.time[i] = 0, ray.mask[i] = embree::kEveryRay, ray.flags[i] = 0, ray.id[i] = unsigned(first) + unsigned(i);
+    if (wave.time.size() > 0) std::memcpy(ray.time, &wave.time[first], bytes);
   }
 
   /// -1 for the lanes that hold rays that traversal can take, else 0: those out of reach, and those that are not
@@ -210,16 +216,27 @@ struct AcceleratedScene::Traversal {
     return scene;
   }
 
-  static RTCGeometry new_embree_triangles(Impl& impl, const TriangleMesh& part, Opacity opacity) {
-    RTCGeometry g = embree::new_geometry(impl.device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  /// Vertices of the pose `step`, in place where Embree can read them there.
+  static void set_vertices(RTCGeometry g, unsigned step, const std::vector<Vec3f>& positions) {
     // Embree reads 16 bytes at each vertex, so the last of 12 needs readable memory after it.
-    if (part.positions.capacity() > part.positions.size()) {
-      rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, part.positions.data(), 0,
-                                 sizeof(Vec3f), part.positions.size());
+    if (positions.capacity() > positions.size()) {
+      rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3, positions.data(), 0, sizeof(Vec3f),
+                                 positions.size());
     } else {
-      void* vertices = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f),
-                                               part.positions.size());
-      if (vertices) std::memcpy(vertices, part.positions.data(), part.positions.size() * sizeof(Vec3f));
+      void* vertices =
+          rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3, sizeof(Vec3f), positions.size());
+      if (vertices) std::memcpy(vertices, positions.data(), positions.size() * sizeof(Vec3f));
+    }
+  }
+
+  static RTCGeometry new_embree_triangles(Impl& impl, const TriangleMesh& part, uint32_t part_index,
+                                          const Track<MeshPose>* track, Opacity opacity) {
+    RTCGeometry g = embree::new_geometry(impl.device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    if (track) {
+      rtcSetGeometryTimeStepCount(g, unsigned(track->size()));
+      for (unsigned step = 0; step < track->size(); ++step) set_vertices(g, step, (*track)[step][part_index].positions);
+    } else {
+      set_vertices(g, 0, part.positions);
     }
     rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, part.triangles.data(), 0,
                                3 * sizeof(uint32_t), part.triangles.size());
@@ -230,29 +247,36 @@ struct AcceleratedScene::Traversal {
   }
 
   /// Part `part_index` of the mesh as geometry `id` of the scene; `object`: where the part is not instanced.
-  static void attach_part(Impl& impl, RTCScene scene, uint32_t id, const Mesh& mesh, uint32_t part_index,
-                          uint32_t object, bool watertight) {
+  static void attach_part(Impl& impl, RTCScene scene, uint32_t id, const Mesh& mesh, const Track<MeshPose>* track,
+                          uint32_t part_index, uint32_t object, bool watertight) {
     const TriangleMesh& part = mesh.parts[part_index];
     const Opacity opacity = impl.filter.opacity.empty() ? Opacity::opaque : impl.filter.opacity[part.material];
     RTCGeometry g;
     if (watertight) {
       impl.triangle_groups.push_back(
-          std::make_unique<TriangleGroup>(TriangleGroup{part, part_index, object, opacity, impl.filter}));
+          std::make_unique<TriangleGroup>(TriangleGroup{part, part_index, object, opacity, impl.filter, track}));
       g = new_triangle_geometry(impl.device, *impl.triangle_groups.back());
     } else {
-      g = new_embree_triangles(impl, part, opacity);
+      g = new_embree_triangles(impl, part, part_index, track, opacity);
     }
     rtcAttachGeometryByID(scene, g, id);
     rtcReleaseGeometry(g);
   }
 
-  static void attach_instance(Impl& impl, uint32_t id, RTCScene mesh, const Affine3d& m) {
+  static void set_transform(RTCGeometry g, unsigned step, const Affine3d& m) {
     const float columns[12] = {float(m.x.x), float(m.x.y),      float(m.x.z),      float(m.y.x),
                                float(m.y.y), float(m.y.z),      float(m.z.x),      float(m.z.y),
                                float(m.z.z), float(m.origin.x), float(m.origin.y), float(m.origin.z)};
+    rtcSetGeometryTransform(g, step, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+  }
+
+  /// `track`: of the instance, null where it stands still at `m`.
+  static void attach_instance(Impl& impl, uint32_t id, RTCScene mesh, const Affine3d& m, const Track<Affine3d>* track) {
     RTCGeometry g = embree::new_geometry(impl.device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(g, mesh);
-    rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+    if (track) rtcSetGeometryTimeStepCount(g, unsigned(track->size()));
+    for (unsigned step = 0; step < (track ? track->size() : 1); ++step)
+      set_transform(g, step, track ? (*track)[step] : m);
     rtcCommitGeometry(g);
     rtcAttachGeometryByID(impl.scene, g, id);
     rtcReleaseGeometry(g);
@@ -300,10 +324,13 @@ AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter
   for (uint32_t object = 0; object < geometry.mesh_instances.size(); ++object) {
     const MeshInstance& instance = geometry.mesh_instances[object];
     const Mesh& mesh = geometry.meshes[instance.mesh];
-    if (uses[instance.mesh] == 1 && instance.world_from_object == Affine3d{}) {
+    const Track<Affine3d>* const places = track_of_object(geometry, object);
+    const Track<MeshPose>* const poses = track_of_mesh(geometry, instance.mesh);
+    if (uses[instance.mesh] == 1 && instance.world_from_object == Affine3d{} && !places) {
       for (uint32_t part = 0; part < mesh.parts.size(); ++part) {
         if (mesh.parts[part].triangles.empty()) continue;
-        Traversal::attach_part(impl, impl.scene, uint32_t(impl.top.size()), mesh, part, object, options.watertight);
+        Traversal::attach_part(impl, impl.scene, uint32_t(impl.top.size()), mesh, poses, part, object,
+                               options.watertight);
         impl.top.push_back({TopEntry::Kind::baked_part, object, part});
       }
       continue;
@@ -313,22 +340,26 @@ AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter
       shared = Traversal::new_scene(impl, options);
       for (uint32_t part = 0; part < mesh.parts.size(); ++part)
         if (!mesh.parts[part].triangles.empty())
-          Traversal::attach_part(impl, shared, part, mesh, part, kNone, options.watertight);
+          Traversal::attach_part(impl, shared, part, mesh, poses, part, kNone, options.watertight);
       rtcCommitScene(shared);
     }
     impl.has_instances = true;
     const auto id = uint32_t(impl.top.size());
-    const float reach = reach_around_instance(instance.world_from_object);
+    // Of a mesh that also deforms, Embree bounds the two motions one by one; their product reaches further.
+    const float reach = !places ? reach_around_instance(instance.world_from_object)
+                        : poses ? 0
+                                : reach_around_instance(*places);
     const uint32_t alike = group_size(geometry, object), count = alike >= kLeastInstanceGroup ? alike : 1;
     if (count > 1 || reach == 0) {
-      impl.instance_groups.push_back(std::make_unique<InstanceGroup>(InstanceGroup{&instance, object, count, shared}));
+      impl.instance_groups.push_back(
+          std::make_unique<InstanceGroup>(InstanceGroup{&instance, object, count, shared, places}));
       Traversal::attach_instances(impl, id, *impl.instance_groups.back());
       impl.top.push_back({TopEntry::Kind::instances, object, 0});
       object += count - 1;
       continue;
     }
     impl.reach = std::min(impl.reach, reach);
-    Traversal::attach_instance(impl, id, shared, instance.world_from_object);
+    Traversal::attach_instance(impl, id, shared, instance.world_from_object, places);
     impl.top.push_back({TopEntry::Kind::instance, object, 0});
   }
   impl.shape_groups = group_shapes(geometry, filter);
@@ -337,6 +368,13 @@ AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter
     rtcAttachGeometryByID(impl.scene, g, unsigned(impl.top.size()));
     rtcReleaseGeometry(g);
     impl.top.push_back({TopEntry::Kind::shapes, kNone, k});
+  }
+  impl.moving_shapes = moving_shapes(geometry, filter);
+  for (uint32_t k = 0; k < impl.moving_shapes.size(); ++k) {
+    RTCGeometry g = new_moving_geometry(impl.device, *impl.moving_shapes[k]);
+    rtcAttachGeometryByID(impl.scene, g, unsigned(impl.top.size()));
+    rtcReleaseGeometry(g);
+    impl.top.push_back({TopEntry::Kind::moving_shapes, kNone, k});
   }
   for (const TopEntry& entry : impl.top) impl.object_of_top.push_back(entry.object);
   rtcCommitScene(impl.scene);

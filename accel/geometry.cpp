@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "accel/baking.h"
+#include "accel/shape_bounds.h"
 
 namespace alhazen {
 namespace {
@@ -18,13 +19,6 @@ void move_to_world(TriangleMesh& part, const Affine3d& world_from_object) {
   }
   if (mirrored)
     for (auto& triangle : part.triangles) std::swap(triangle[1], triangle[2]);
-}
-
-std::array<Vec3d, 8> corners(const Bounds3d& b) {
-  std::array<Vec3d, 8> points;
-  for (size_t k = 0; k < points.size(); ++k)
-    points[k] = {k & 1 ? b.upper.x : b.lower.x, k & 2 ? b.upper.y : b.lower.y, k & 4 ? b.upper.z : b.lower.z};
-  return points;
 }
 
 /// The vertices that triangles use; of a mesh that is placed so often that these would be too many, its box's corners.
@@ -74,8 +68,7 @@ void visit_outline(const Geometry& geometry, const std::function<void(const Vec3
   for (const MeshInstance& instance : geometry.mesh_instances)
     for (const Vec3d& p : outlines[instance.mesh]) visit_finite(instance.world_from_object, p);
   for (const ShapeInstance& placed : geometry.shape_instances)
-    for (const Vec3d& p :
-         corners(std::visit([](const auto& shape) { return bounds(shape); }, geometry.shapes[placed.shape])))
+    for (const Vec3d& p : corners(object_bounds(geometry.shapes[placed.shape])))
       visit_finite(placed.world_from_object, p);
 }
 

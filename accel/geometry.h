@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "accel/motion.h"
 #include "accel/shape.h"
 #include "core/transform.h"
 #include "core/vec.h"
@@ -65,6 +66,7 @@ struct Geometry {
   std::vector<MeshInstance> mesh_instances;
   std::vector<ShapeInstance> shape_instances;
   std::vector<uint32_t> parent_of_node;  // by glTF node, kNone for roots; may be shorter: the others are roots
+  Motion motion;                         // while the shutter is open; what is above is how it is when it opens
 };
 
 /// Moves every mesh that is placed exactly once to world space, in place, and makes its instance's map the identity: an

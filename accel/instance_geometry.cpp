@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "accel/posed.h"
 #include "accel/traversal_bounds.h"
 
 namespace alhazen {
@@ -11,13 +12,14 @@ namespace {
 
 const InstanceGroup& group_of(const void* data) { return *static_cast<const InstanceGroup*>(data); }
 
-/// A box around the instance, larger by what float traversal of it may err.
+/// A box around the instance, larger by what float traversal of it may err. Linear between two poses, for the mesh's
+/// own box holds it at all times.
 void write_bounds(const RTCBoundsFunctionArguments* args) {
   const InstanceGroup& group = group_of(args->geometryUserPtr);
   RTCBounds box;
   rtcGetSceneBounds(group.mesh, &box);
   const Bounds3d object{{box.lower_x, box.lower_y, box.lower_z}, {box.upper_x, box.upper_y, box.upper_z}};
-  const Affine3d& m = group.first[args->primID].world_from_object;
+  const Affine3d& m = group.places ? (*group.places)[args->timeStep] : group.first[args->primID].world_from_object;
   const Bounds3d world = transform_bounds(m, object);
   const Vec3d reach = max(abs(object.lower), abs(object.upper));
   const Vec3d margin = (abs(m.x) * reach.x + abs(m.y) * reach.y + abs(m.z) * reach.z + abs(m.origin)) * 0x1p-20;
@@ -28,12 +30,23 @@ void write_bounds(const RTCBoundsFunctionArguments* args) {
 bool within_reach(const Vec3f& v) { return max_component(abs(v)) < embree::kReach; }
 
 /// The lanes of a callback's packet in the space of the mesh; the direction is not made unit length, so t is shared.
-/// Rays out of reach there miss.
+/// Rays out of reach there miss, and those at a time when the instance has no extent.
 template <int width, class Ray>
-void enter(const Affine3f& object_from_world, RTCRayN* from, unsigned n, const int* active, int* valid, Ray& ray) {
+void enter(const InstanceGroup& group, unsigned primitive, RTCRayN* from, unsigned n, const int* active, int* valid,
+           Ray& ray) {
   for (unsigned i = 0; i < unsigned(width); ++i) valid[i] = i < n ? active[i] : 0;
+  Affine3f object_from_world;
+  if (!group.places) object_from_world = Affine3f(inverse(group.first[primitive].world_from_object));
   for (unsigned i = 0; i < n; ++i) {
     if (!valid[i]) continue;
+    if (group.places) {
+      const Affine3d then = at_time(*group.places, RTCRayN_time(from, n, i));
+      if (!is_invertible(then)) {
+        valid[i] = 0;
+        continue;
+      }
+      object_from_world = Affine3f(inverse(then));
+    }
     const Vec3f o = transform_point(
         object_from_world, Vec3f{RTCRayN_org_x(from, n, i), RTCRayN_org_y(from, n, i), RTCRayN_org_z(from, n, i)});
     const Vec3f d = transform_vector(
@@ -69,11 +82,6 @@ embree::Query& query_of(const Arguments* args) {
   return const_cast<embree::Query&>(embree::query_of<embree::Query>(args));
 }
 
-template <class Arguments>
-Affine3f object_from_world(const Arguments* args) {
-  return Affine3f(inverse(group_of(args->geometryUserPtr).first[args->primID].world_from_object));
-}
-
 template <int width>
 void intersect_packet(const RTCIntersectFunctionNArguments* args) {
   const InstanceGroup& group = group_of(args->geometryUserPtr);
@@ -82,7 +90,7 @@ void intersect_packet(const RTCIntersectFunctionNArguments* args) {
   RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, n);
   alignas(64) int valid[width];
   alignas(64) typename embree::Packets<width>::RayHit packet;
-  enter<width>(object_from_world(args), rays, n, args->valid, valid, packet.ray);
+  enter<width>(group, args->primID, rays, n, args->valid, valid, packet.ray);
   std::fill_n(packet.hit.geomID, width, RTC_INVALID_GEOMETRY_ID);
   std::fill_n(packet.hit.instID[0], width, RTC_INVALID_GEOMETRY_ID);
   {
@@ -108,7 +116,7 @@ void occlude_packet(const RTCOccludedFunctionNArguments* args) {
   const InstanceGroup& group = group_of(args->geometryUserPtr);
   alignas(64) int valid[width];
   alignas(64) typename embree::Packets<width>::Ray packet;
-  enter<width>(object_from_world(args), args->ray, args->N, args->valid, valid, packet);
+  enter<width>(group, args->primID, args->ray, args->N, args->valid, valid, packet);
   {
     const Entered entered(*args->context, group.first_object + args->primID);
     embree::occluded<width>(valid, group.mesh, query_of(args), packet);
@@ -142,15 +150,29 @@ float reach_around_instance(const Affine3d& m) {
   return placed ? float(std::min<double>(embree::kReach, embree::kReach / 2 / magnified)) : 0;
 }
 
+float reach_around_instance(const Track<Affine3d>& track) {
+  const auto size = [](const Affine3d& m) { return max_component(abs(m.x) + abs(m.y) + abs(m.z)); };
+  float reach = embree::kReach;
+  for (size_t k = 0; k < track.size(); ++k) {
+    const Affine3d &m = track[k], &next = track[std::min(k + 1, track.size() - 1)];
+    // What is added to m on the way to the next is so much less that inverses stay within twice that of m.
+    const Affine3d added{next.x - m.x, next.y - m.y, next.z - m.z, {}};
+    if (!(size(added) * size(inverse(m)) <= 0.5)) return 0;
+    reach = std::min(reach, reach_around_instance(m) / 2);
+  }
+  return reach;
+}
+
 uint32_t group_size(const Geometry& geometry, uint32_t object) {
-  const auto begin = geometry.mesh_instances.begin() + ptrdiff_t(object);
-  const auto end = std::find_if(begin, geometry.mesh_instances.end(),
-                                [&](const MeshInstance& instance) { return instance.mesh != begin->mesh; });
-  return uint32_t(end - begin);
+  const std::vector<MeshInstance>& placed = geometry.mesh_instances;
+  uint32_t end = object;
+  while (end < placed.size() && placed[end].mesh == placed[object].mesh && !track_of_object(geometry, end)) ++end;
+  return end - object;
 }
 
 RTCGeometry new_instance_geometry(RTCDevice device, const InstanceGroup& group) {
   RTCGeometry g = embree::new_geometry(device, RTC_GEOMETRY_TYPE_USER);
+  if (group.places) rtcSetGeometryTimeStepCount(g, unsigned(group.places->size()));
   rtcSetGeometryUserPrimitiveCount(g, group.count);
   rtcSetGeometryUserData(g, const_cast<InstanceGroup*>(&group));
   rtcSetGeometryBoundsFunction(g, write_bounds, nullptr);

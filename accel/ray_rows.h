@@ -14,6 +14,7 @@ struct RayRows {
   [[nodiscard]] const float* origin(unsigned axis) const { return rows + size_t(axis) * width; }
   [[nodiscard]] const float* t_min() const { return rows + size_t(3) * width; }
   [[nodiscard]] const float* direction(unsigned axis) const { return rows + size_t(4 + axis) * width; }
+  [[nodiscard]] const float* time() const { return rows + size_t(7) * width; }
   [[nodiscard]] const float* t_max() const { return rows + size_t(8) * width; }
 
   [[nodiscard]] Rayf ray(unsigned i) const {

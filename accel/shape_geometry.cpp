@@ -7,7 +7,8 @@
 #include <string>
 
 #include "accel/packet.h"
-#include "accel/traversal_bounds.h"
+#include "accel/posed.h"
+#include "accel/shape_bounds.h"
 #include "accel/wave_query.h"
 #include "core/error.h"
 #include "core/fork_join.h"
@@ -18,24 +19,10 @@ namespace {
 constexpr double kLargestCoordinate = 1.844e18;  // beyond it, Embree drops primitives without a word
 // The functions on lanes are flattened: a call for each operation on vectors would cost more than the operation.
 
-Bounds3d object_bounds(const PlacedShape& placed) {
-  return std::visit([](const auto& shape) { return bounds(shape); }, *placed.shape);
-}
-
-/// A box around the placed shape, larger by a few roundings of double.
-Bounds3d conservative_bounds(const PlacedShape& placed, const Bounds3d& object) {
-  if (is_empty(object)) return object;
-  const Affine3d& m = *placed.world_from_object;
-  const Bounds3d world = transform_bounds(m, object);
-  const Vec3d reach = max(abs(object.lower), abs(object.upper));
-  const Vec3d size = abs(m.x) * reach.x + abs(m.y) * reach.y + abs(m.z) * reach.z + abs(m.origin);
-  return {world.lower - size * 1e-14, world.upper + size * 1e-14};
-}
-
 void write_bounds(const RTCBoundsFunctionArguments* args) {
   const ShapeGroup& group = *static_cast<const ShapeGroup*>(args->geometryUserPtr);
   const PlacedShape& placed = group.members[args->primID].placed;
-  const Bounds3f b = traversal_bounds(conservative_bounds(placed, object_bounds(placed)));
+  const Bounds3f b = traversal_bounds(conservative_bounds(*placed.world_from_object, object_bounds(*placed.shape)));
   *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
 }
 
@@ -182,15 +169,6 @@ Callbacks callbacks_for(size_t kind, std::index_sequence<kKind...>) {
   return table[kind];
 }
 
-void check_reach(const Geometry& geometry, uint32_t object, const Bounds3d& world) {
-  const Bounds3f b = traversal_bounds(world);
-  const auto reach = double(std::max(max_component(abs(b.lower)), max_component(abs(b.upper))));
-  if (!(reach < kLargestCoordinate))
-    throw Error("the shape of node " + std::to_string(node_of(geometry, object)) +
-                    " reaches further than 1.8e18 from the origin, more than traversal can hold",
-                ExitStatus::input);
-}
-
 /// Fills in how lines come to each member, in parallel; 1 for those that have no surface.
 std::vector<uint8_t> place_members(const Geometry& geometry, ShapeGroup& group) {
   std::vector<uint8_t> empty(group.members.size());
@@ -199,7 +177,8 @@ std::vector<uint8_t> place_members(const Geometry& geometry, ShapeGroup& group) 
   tbb::parallel_for(size_t(0), group.members.size(), order.task([&](size_t k) {
     ShapeGroup::Member& member = group.members[k];
     member.placed.object_from_world = line_map(*member.placed.world_from_object);
-    const Bounds3d object = object_bounds(member.placed), world = conservative_bounds(member.placed, object);
+    const Bounds3d object = object_bounds(*member.placed.shape);
+    const Bounds3d world = conservative_bounds(*member.placed.world_from_object, object);
     empty[k] = is_empty(world);
     if (empty[k]) return;
     check_reach(geometry, group.objects[k], world);
@@ -210,16 +189,27 @@ std::vector<uint8_t> place_members(const Geometry& geometry, ShapeGroup& group) 
 
 }  // namespace
 
+void check_reach(const Geometry& geometry, uint32_t object, const Bounds3d& world) {
+  const Bounds3f b = traversal_bounds(world);
+  const auto reach = double(std::max(max_component(abs(b.lower)), max_component(abs(b.upper))));
+  if (!(reach < kLargestCoordinate))
+    throw Error("the shape of node " + std::to_string(node_of(geometry, object)) +
+                    " reaches further than 1.8e18 from the origin, more than traversal can hold",
+                ExitStatus::input);
+}
+
 std::vector<std::unique_ptr<ShapeGroup>> group_shapes(const Geometry& geometry, const SurfaceFilter& filter) {
   std::vector<std::unique_ptr<ShapeGroup>> groups(std::variant_size_v<Shape>);
   for (uint32_t i = 0; i < geometry.shape_instances.size(); ++i) {
+    const auto object = uint32_t(geometry.mesh_instances.size()) + i;
+    if (track_of_object(geometry, object)) continue;
     const ShapeInstance& instance = geometry.shape_instances[i];
     const Shape& shape = geometry.shapes[instance.shape];
     auto& group = groups[shape.index()];
     if (!group) group = std::make_unique<ShapeGroup>(ShapeGroup{filter, {}, {}, {}});
     group->members.push_back({{{}, &instance.world_from_object, &shape},
                               filter.opacity.empty() ? Opacity::opaque : filter.opacity[instance.material]});
-    group->objects.push_back(uint32_t(geometry.mesh_instances.size()) + i);
+    group->objects.push_back(object);
   }
   std::erase(groups, nullptr);
   for (auto& group : groups) {

@@ -24,8 +24,8 @@ struct ShapeGroup {
   std::vector<uint32_t> objects;   // Geometry's object numbers
 };
 
-/// The scene's shapes by kind; kinds without members are left out. Throws `Error` naming the node of a shape that
-/// reaches further than traversal can hold.
+/// The scene's shapes that stand still, by kind; kinds without members are left out. Throws `Error` naming the node of
+/// a shape that reaches further than traversal can hold.
 [[nodiscard]] std::vector<std::unique_ptr<ShapeGroup>> group_shapes(const Geometry& geometry,
                                                                     const SurfaceFilter& filter);
 

@@ -2,6 +2,7 @@
 
 #include "accel/instance_geometry.h"
 #include "accel/packet.h"
+#include "accel/posed.h"
 #include "accel/shape_hits.h"
 #include "accel/traversal_bounds.h"
 #include "accel/wave_query.h"
@@ -19,6 +20,13 @@ Triangle triangle_of(const TriangleGroup& group, uint32_t primitive) {
   return {Vec3d(p[corner[0]]), Vec3d(p[corner[1]]), Vec3d(p[corner[2]])};
 }
 
+/// Triangles that share a vertex share it at every time.
+Triangle triangle_at(const TriangleGroup& group, uint32_t primitive, float time) {
+  const auto& corner = group.part.triangles[primitive];
+  const PosedPart part(group.part, group.part_index, group.track, time);
+  return {Vec3d(part.position(corner[0])), Vec3d(part.position(corner[1])), Vec3d(part.position(corner[2]))};
+}
+
 bool has_area(const Triangle& t) {
   const Vec3d n = cross(t.b - t.a, t.c - t.a);
   if (!(n == Vec3d{})) return true;
@@ -29,9 +37,12 @@ bool has_area(const Triangle& t) {
 /// Empty for what is never hit.
 void write_bounds(const RTCBoundsFunctionArguments* args) {
   const auto& group = *static_cast<const TriangleGroup*>(args->geometryUserPtr);
-  const Triangle t = triangle_of(group, args->primID);
+  const auto& corner = group.part.triangles[args->primID];
+  const auto& p = group.track ? (*group.track)[args->timeStep][group.part_index].positions : group.part.positions;
+  const Triangle t{Vec3d(p[corner[0]]), Vec3d(p[corner[1]]), Vec3d(p[corner[2]])};
   Bounds3d box;
-  if (is_finite(t.a) && is_finite(t.b) && is_finite(t.c) && has_area(t))
+  // Without area at one pose, a triangle may have some at another.
+  if (is_finite(t.a) && is_finite(t.b) && is_finite(t.c) && (group.track || has_area(t)))
     extend(box, t.a), extend(box, t.b), extend(box, t.c);
   const Bounds3f b = traversal_bounds(box);
   *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
@@ -83,8 +94,19 @@ template <class Visit>
 }
 
 template <class Arguments, class Visit>
+void for_each_hit_in_motion(const Arguments* args, const TriangleGroup& group, const Visit& visit) {
+  const RayRows rays = rows_of(args);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (!args->valid[i]) continue;
+    embree::reject(args, i);  // until a hit counts
+    if (const auto hit = hit_of(triangle_at(group, args->primID, rays.time()[i]), rays.ray(i))) visit(group, i, *hit);
+  }
+}
+
+template <class Arguments, class Visit>
 void for_each_hit(const Arguments* args, const Visit& visit) {
   const auto& group = *static_cast<const TriangleGroup*>(args->geometryUserPtr);
+  if (group.track) return for_each_hit_in_motion(args, group, visit);
   const Triangle triangle = triangle_of(group, args->primID);
   const RayRows rays = rows_of(args);
   const uint32_t lanes = with_width(rays.width, [&](auto n) {
@@ -133,6 +155,7 @@ void occlude(const RTCOccludedFunctionNArguments* args) {
 
 RTCGeometry new_triangle_geometry(RTCDevice device, const TriangleGroup& group) {
   RTCGeometry g = embree::new_geometry(device, RTC_GEOMETRY_TYPE_USER);
+  if (group.track) rtcSetGeometryTimeStepCount(g, unsigned(group.track->size()));
   rtcSetGeometryUserPrimitiveCount(g, unsigned(group.part.triangles.size()));
   rtcSetGeometryUserData(g, const_cast<TriangleGroup*>(&group));
   rtcSetGeometryBoundsFunction(g, write_bounds, nullptr);

@@ -17,6 +17,7 @@ struct TriangleGroup {
   uint32_t object;  // Geometry's object number, where the part is not instanced
   Opacity opacity;
   const SurfaceFilter& filter;
+  const Track<MeshPose>* track;  // of its mesh, null where that keeps its form
 };
 
 /// A committed user geometry over the group, which must outlive it. Hits are those of Embree's triangles: u and v weigh

@@ -19,6 +19,7 @@ struct Vec3Lanes {
 struct RayWave {
   Vec3Lanes origin, direction;
   Lanes<float> t_min, t_max;
+  Lanes<float> time;  // of the shutter, in [0, 1]; of no elements where all are at 0
 
   [[nodiscard]] size_t size() const { return t_min.size(); }
   void resize(size_t n) { origin.resize(n), direction.resize(n), t_min.resize(n), t_max.resize(n); }
