@@ -1,6 +1,7 @@
 // Counter-based samples: a function of (pixel, sample) alone, so that no picture depends on who computed it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "core/vec.h"
@@ -49,6 +50,21 @@ namespace alhazen {
   const uint32_t y = reverse_bits(pascal_product(i));
   const auto unit = [](uint32_t bits) { return float(bits >> 8) * 0x1p-24f; };
   return {unit(owen_scramble(reverse_bits(i), mix_bits(seed + 1))), unit(owen_scramble(y, mix_bits(seed + 2)))};
+}
+
+/// The direction numbers of the third Sobol' dimension: of the polynomial x^2 + x + 1, from 1 and 3 on.
+inline constexpr std::array<uint32_t, 32> kThirdSobolDirections = [] {
+  std::array<uint32_t, 32> v{1u << 31, 3u << 30};
+  for (size_t k = 2; k < v.size(); ++k) v[k] = v[k - 1] ^ v[k - 2] ^ v[k - 2] >> 2;
+  return v;
+}();
+
+/// The third coordinate of point `index` of the same sequence, in [0, 1).
+[[nodiscard]] constexpr float third_sobol_owen(uint32_t index, uint32_t seed) noexcept {
+  uint32_t i = owen_scramble(index, mix_bits(seed)), z = 0;
+  for (size_t k = 0; i != 0; ++k, i >>= 1)
+    if (i & 1) z ^= kThirdSobolDirections[k];
+  return float(owen_scramble(z, mix_bits(seed + 3)) >> 8) * 0x1p-24f;
 }
 
 /// A tent of half-width 1 about 0 from a uniform number: importance-sampling the reconstruction filter keeps every

@@ -13,6 +13,7 @@
 #include "core/sampling.h"
 #include "renderer/camera_cell.h"
 #include "renderer/camera_ray.h"
+#include "renderer/moving.h"
 #include "renderer/surface.h"
 #include "renderer/trace_observer.h"
 #include "renderer/whitted.h"
@@ -33,21 +34,31 @@ Rgb light_passing(const void* data, const Crossing& crossing) noexcept {
   return straight_transmittance(scene.materials[s.material], texture_table(scene), s.inputs());
 }
 
-/// The camera rays of one sample of every pixel.
+uint32_t seed_of(int x, int y) { return mix_bits(uint32_t(x) + mix_bits(uint32_t(y))); }
+
+/// The camera rays of one sample of every pixel; those of a moving scene at times of their own.
 void push_camera_rays(const Camera& camera, const RenderOptions& options, const Cell& cell, uint32_t sample,
-                      PathWave& wave) {
+                      bool moving, WaveArena& arena) {
+  PathWave& wave = arena.pending;
+  arena.time_of_pixel.resize(moving ? size_t(kCellSize) * kCellSize : 0);
   wave.resize(size_t(cell.x1 - cell.x0) * size_t(cell.y1 - cell.y0));
   size_t i = 0;
   const Film film(camera, options.width, options.height);
+  const bool camera_moves = moving && !camera.track.empty();
   const Cone cone = camera_cone(camera, options.height, options.samples);
   for_each_pixel(cell, [&](int x, int y) {
     double fx = x + 0.5, fy = y + 0.5;
     if (options.samples > 1) {
-      const Vec2f u = sobol_owen(sample, mix_bits(uint32_t(x) + mix_bits(uint32_t(y))));
+      const Vec2f u = sobol_owen(sample, seed_of(x, y));
       fx += double(sample_tent(u.x)), fy += double(sample_tent(u.y));
     }
     const uint32_t pixel = uint32_t((y - cell.y0) * kCellSize + (x - cell.x0));
-    wave.rays.set(i, camera_ray(film, fx, fy)), wave.paths[i] = {.pixel = pixel, .cone = cone};
+    if (moving) arena.time_of_pixel[pixel] = third_sobol_owen(sample, seed_of(x, y));
+    const auto film_then = [&] {
+      return Film(at_time(camera.track, arena.time_of_pixel[pixel]), options.width, options.height);
+    };
+    wave.rays.set(i, camera_ray(camera_moves ? film_then() : film, fx, fy));
+    wave.paths[i] = {.pixel = pixel, .cone = cone};
     ++i;
   });
 }
@@ -59,6 +70,7 @@ struct CellWorker {
   const RenderOptions& options;
   RenderControl& control;
   RenderResult& result;
+  bool moving;         // while the shutter is open
   int x0 = 0, y0 = 0;  // of the result in the picture
 
   /// Fills the cell's pixels; false where it was stopped before they were finished, and left them empty.
@@ -81,7 +93,7 @@ struct CellWorker {
 
   void signature(const Cell& cell, WaveArena& arena) const {
     arena.clock.enter(Phase::generation);
-    push_camera_rays(camera, options, cell, 0, arena.pending);
+    push_camera_rays(camera, options, cell, 0, false, arena);
     if (arena.log) arena.log->push_back(logged(WaveKind::camera, arena.pending.rays));
     arena.clock.enter(Phase::traversal);
     accelerated.intersect(arena.pending.rays, Coherence::coherent, arena.hits);
@@ -106,7 +118,7 @@ struct CellWorker {
       if (control.stop) return false;
       arena.clock.enter(Phase::generation);
       radiance.fill(Rgb(0.0f)), background.fill(0.0f);
-      push_camera_rays(camera, options, cell, uint32_t(sample), arena.pending);
+      push_camera_rays(camera, options, cell, uint32_t(sample), moving, arena);
       if (arena.observer) arena.observer->begin_sample(sample, arena.pending);
       trace_whitted(scene, accelerated, options, arena, radiance.data(), background.data());
       arena.clock.enter(Phase::film);
@@ -168,7 +180,7 @@ RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, con
   } else {
     result.color = empty_picture(options.width, options.height);
   }
-  const CellWorker worker{scene, accelerated, camera, options, control, result};
+  const CellWorker worker{scene, accelerated, camera, options, control, result, is_moving(scene, camera)};
   const int cells_x = (options.width + kCellSize - 1) / kCellSize,
             cells_y = (options.height + kCellSize - 1) / kCellSize;
   const int side = std::max(1, (options.tile_size + kCellSize - 1) / kCellSize);  // cells a side of a tile
@@ -202,7 +214,8 @@ CellPicture render_cell(const Scene& scene, const AcceleratedScene& accelerated,
   result.color = empty_picture(cell.x1 - cell.x0, cell.y1 - cell.y0);
   WaveArena arena;
   arena.observer = &observer;
-  const CellWorker worker{scene, accelerated, camera, options, control, result, cell.x0, cell.y0};
+  const CellWorker worker{scene,   accelerated, camera, options, control, result, is_moving(scene, camera),
+                          cell.x0, cell.y0};
   if (!worker.trace(cell, arena)) return {};
   return {cell.x0, cell.y0, std::move(result.color)};
 }

@@ -23,6 +23,7 @@ struct Light {
   float range = 0;                               // metres; 0: unlimited
   float cos_inner = 1, cos_outer = 0.70710678f;  // spot cone
   bool attenuated = true;                        // inverse-square and range; false: ALHAZEN_lights "none"
+  Track<Light> track;                            // while the shutter is open
 };
 
 /// Looks along its own -z, y up. `world_from_camera` is a rotation and a translation, never a scale.
@@ -33,6 +34,7 @@ struct Camera {
   double yfov = 0.8;  // radians, the whole vertical angle
   double ymag = 1;    // metres, half the height of an orthographic view
   Affine3d world_from_camera;
+  Track<Camera> track;  // while the shutter is open
 };
 
 struct Scene {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "accel/posed.h"
+
 namespace alhazen {
 namespace {
 
@@ -45,17 +47,19 @@ void measure_uvs(const TriangleMesh& part, const std::array<uint32_t, 3>& corner
 /// Traversal computes a triangle's normal in floats in object space, as a cross product of its edges, and with it the
 /// plane's distance from a ray that starts up to the longest edge away from a vertex: wrong by this over twice the
 /// area. For needles that is many roundings; for a triangle of no area, more than its size would hide nothing any more.
-double plane_error(const TriangleMesh& part, const std::array<uint32_t, 3>& corner) {
-  const Vec3d a(part.positions[corner[0]]), b(part.positions[corner[1]]), c(part.positions[corner[2]]);
+double plane_error(const PosedPart& part, const std::array<uint32_t, 3>& corner) {
+  const Vec3d a(part.position(corner[0])), b(part.position(corner[1])), c(part.position(corner[2]));
   std::array<double, 3> edges = {length(b - a), length(c - b), length(a - c)};
   std::ranges::sort(edges);
   return edges[2] * std::min(8 * kUlp * edges[0] * edges[1], length(cross(b - a, c - a)));
 }
 
-SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v) {
-  const MeshInstance& instance = scene.geometry.mesh_instances[ids.object];
-  const TriangleMesh& part = scene.geometry.meshes[instance.mesh].parts[ids.part];
-  const Affine3d& m = instance.world_from_object;
+SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v, float time) {
+  const Geometry& geometry = scene.geometry;
+  const MeshInstance& instance = geometry.mesh_instances[ids.object];
+  const TriangleMesh& part = geometry.meshes[instance.mesh].parts[ids.part];
+  const PosedPart posed(part, ids.part, track_of_mesh(geometry, instance.mesh), time);
+  const Affine3d m = world_from_object(geometry, ids.object, time);
   const auto& corner = part.triangles[ids.primitive];
   SurfacePoint s;
   s.material = part.material;
@@ -63,7 +67,7 @@ SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v)
 
   const bool baked = m == Affine3d{};
   const auto vertex = [&](size_t k) {
-    const Vec3d p_object(part.positions[corner[k]]);
+    const Vec3d p_object(posed.position(corner[k]));
     return baked ? p_object : transform_point(m, p_object);
   };
   const Vec3d p0 = vertex(0), p1 = vertex(1), p2 = vertex(2);
@@ -75,22 +79,24 @@ SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v)
   if (stretch < 0) ng = -ng;
   s.ng_world = s.ns_world = Vec3f(ng);
   if (part.normals.empty() && !part.polygon_normals.empty()) {
-    const Vec3f& n = part.polygon_normals[polygon_of(part, ids.primitive)];
+    const Vec3f n = posed.polygon_normal(polygon_of(part, ids.primitive));
     const Vec3d n_world = normalize(transform_normal(m, Vec3d(n)));
     if (dot(n_world, n_world) > 0) s.ns_world = Vec3f(n_world);
   }
-  // Rounding of the position, of an instance's ray transform, and of the traversal's plane.
-  s.offset = float(kUlp * (baked ? 4 : 16) * (max_component(abs(s.p_world)) + max_component(abs(m.origin))) +
-                   plane_error(part, corner) * std::abs(stretch) / length(twice_area));
+  // Rounding of the position, of an instance's ray transform, and of the traversal's plane; of both poses in motion.
+  const bool moves = track_of_object(geometry, ids.object) || track_of_mesh(geometry, instance.mesh);
+  const double roundings = moves ? 64 : baked ? 4 : 16;
+  s.offset = float(kUlp * roundings * (max_component(abs(s.p_world)) + max_component(abs(m.origin))) +
+                   plane_error(posed, corner) * std::abs(stretch) / length(twice_area));
 
   const float w = 1 - u - v;
   if (!part.normals.empty()) {
-    const Vec3f n = part.normals[corner[0]] * w + part.normals[corner[1]] * u + part.normals[corner[2]] * v;
+    const Vec3f n = posed.normal(corner[0]) * w + posed.normal(corner[1]) * u + posed.normal(corner[2]) * v;
     const Vec3d n_world = normalize(baked ? Vec3d(n) : transform_normal(m, Vec3d(n)));
     if (is_finite(n_world) && dot(n_world, n_world) > 0) s.ns_world = Vec3f(n_world);
   }
   if (!part.tangents.empty()) {
-    const Vec4f &a = part.tangents[corner[0]], &b = part.tangents[corner[1]], &c = part.tangents[corner[2]];
+    const Vec4f a = posed.tangent(corner[0]), b = posed.tangent(corner[1]), c = posed.tangent(corner[2]);
     const Vec3f t{w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y, w * a.z + u * b.z + v * c.z};
     s.tangent_world = Vec3f(normalize(baked ? Vec3d(t) : transform_vector(m, Vec3d(t))));
     s.bitangent_sign = stretch < 0 ? -a.w : a.w;
@@ -98,9 +104,9 @@ SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v)
   return s;
 }
 
-SurfacePoint shape_point(const Scene& scene, uint32_t object, int face, const Vec3d& p_near_object) {
+/// `m`: from the shape's space to the world.
+SurfacePoint shape_point(const Scene& scene, uint32_t object, int face, const Affine3d& m, const Vec3d& p_near_object) {
   const ShapeInstance& placed = shape_instance(scene.geometry, object);
-  const Affine3d& m = placed.world_from_object;
   SurfacePoint s;
   s.material = placed.material;
   std::visit(
@@ -131,19 +137,20 @@ SurfaceIds surface_ids(const Scene& scene, const HitIds& hit) noexcept {
   return {node, part.first_primitive + polygon_of(part, hit.primitive), of_file(part.material)};
 }
 
-SurfacePoint surface_point(const Scene& scene, const Rayf& ray_world, const HitIds& ids, float t, float u,
-                           float v) noexcept {
-  if (!is_shape(scene.geometry, ids.object)) return mesh_point(scene, ids, u, v);
-  const Affine3d object_from_world = inverse(shape_instance(scene.geometry, ids.object).world_from_object);
+SurfacePoint surface_point(const Scene& scene, const Rayf& ray_world, const HitIds& ids, float t, float u, float v,
+                           float time) noexcept {
+  if (!is_shape(scene.geometry, ids.object)) return mesh_point(scene, ids, u, v, time);
+  const Affine3d m = world_from_object(scene.geometry, ids.object, time);
   const Vec3d p_world = Vec3d(ray_world.origin) + Vec3d(ray_world.direction) * double(t);
-  SurfacePoint s = shape_point(scene, ids.object, int(ids.part), transform_point(object_from_world, p_world));
+  SurfacePoint s = shape_point(scene, ids.object, int(ids.part), m, transform_point(inverse(m), p_world));
   if (!(dot(s.ng_world, s.ng_world) > 0)) s.ng_world = s.ns_world = -ray_world.direction;  // a singular point
   return s;
 }
 
 SurfacePoint surface_point(const Scene& scene, const Crossing& crossing) noexcept {
   if (is_shape(scene.geometry, crossing.object))
-    return shape_point(scene, crossing.object, int(crossing.part), crossing.p_object);
+    return shape_point(scene, crossing.object, int(crossing.part),
+                       shape_instance(scene.geometry, crossing.object).world_from_object, crossing.p_object);
   const MeshInstance& instance = scene.geometry.mesh_instances[crossing.object];
   const TriangleMesh& part = scene.geometry.meshes[instance.mesh].parts[crossing.part];
   SurfacePoint s;

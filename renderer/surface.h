@@ -40,9 +40,9 @@ struct SurfaceIds {
 };
 [[nodiscard]] SurfaceIds surface_ids(const Scene& scene, const HitIds& hit) noexcept;
 
-/// The surface where `ray_world` hits at t, with barycentric u and v for triangles.
+/// The surface where `ray_world` hits at t, with barycentric u and v for triangles, at that time of the shutter.
 [[nodiscard]] SurfacePoint surface_point(const Scene& scene, const Rayf& ray_world, const HitIds& ids, float t, float u,
-                                         float v) noexcept;
+                                         float v, float time = 0) noexcept;
 
 /// Only what texture look-ups need, for crossings met in traversal.
 [[nodiscard]] SurfacePoint surface_point(const Scene& scene, const Crossing& crossing) noexcept;

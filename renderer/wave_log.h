@@ -28,6 +28,8 @@ using CellWaves = std::vector<LoggedWave>;
   LoggedWave copy{kind, {}};
   copy.rays.resize(rays.size());
   for (size_t i = 0; i < rays.size(); ++i) copy.rays.set(i, rays.get(i));
+  copy.rays.time.resize(rays.time.size());
+  for (size_t i = 0; i < rays.time.size(); ++i) copy.rays.time[i] = rays.time[i];
   return copy;
 }
 

@@ -6,6 +6,7 @@
 #include "materials/fresnel.h"
 #include "materials/metallic_roughness.h"
 #include "materials/phong.h"
+#include "renderer/moving.h"
 #include "renderer/trace_observer.h"
 
 namespace alhazen {
@@ -65,6 +66,7 @@ class Whitted {
     while (arena_.pending.size() > 0) {
       take_wave();
       for (size_t i = 0; i < arena_.current.size(); ++i) ++arena_.rays_by_kind[size_t(arena_.current.paths[i].kind)];
+      set_times(arena_.current.rays, [&](size_t i) { return arena_.current.paths[i].pixel; });
       log(first ? WaveKind::camera : WaveKind::bounced, arena_.current.rays);
       arena_.clock.enter(Phase::traversal);
       accelerated_.intersect(arena_.current.rays, first ? Coherence::coherent : Coherence::incoherent, arena_.hits);
@@ -79,6 +81,18 @@ class Whitted {
   }
 
  private:
+  /// Of the shutter, when all rays of the sample at hand are traced.
+  [[nodiscard]] float time_of(uint32_t pixel) const {
+    return arena_.time_of_pixel.size() > 0 ? arena_.time_of_pixel[pixel] : 0;
+  }
+
+  template <class PixelOf>
+  void set_times(RayWave& rays, const PixelOf& pixel_of) const {
+    if (arena_.time_of_pixel.size() == 0) return;
+    rays.time.resize(rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) rays.time[i] = time_of(pixel_of(i));
+  }
+
   void log(WaveKind kind, const RayWave& rays) {
     if (arena_.log && rays.size() > 0) arena_.log->push_back(logged(kind, rays));
   }
@@ -120,7 +134,7 @@ class Whitted {
       return tell([&](TraceObserver& observer) { observer.uncover(path.weight.r); });
     }
     const HitIds ids{hits.object[i], hits.part[i], hits.primitive[i]};
-    SurfacePoint surface = surface_point(scene_, ray, ids, hits.t[i], hits.u[i], hits.v[i]);
+    SurfacePoint surface = surface_point(scene_, ray, ids, hits.t[i], hits.u[i], hits.v[i], time_of(path.pixel));
     const Cone cone{path.cone.width_at(hits.t[i]), path.cone.spread};
     // A slanted surface shows more of itself along one axis: the mean of both, for mip levels have no direction.
     surface.footprint = cone.width / std::sqrt(std::max(1e-3f, std::abs(dot(surface.ng_world, ray.direction))));
@@ -353,30 +367,39 @@ class Whitted {
   /// Queues one shadow ray for each light whose reflected light is not 0; `reflected(bsdf, to_light)` says how much.
   template <class Bsdf, class Reflected>
   void add_lights(const Shading& s, const Bsdf& bsdf, const Reflected& reflected) {
-    for (const Light& light : scene_.lights) {
-      Vec3f to_light;
-      float distance = std::numeric_limits<float>::infinity();
-      const Rgb arriving = light_at(light, s.surface.p_world, to_light, distance);
-      if (!(max_component(arriving) > 0)) continue;
-      const Rgb light_to_eye = s.weight * arriving * reflected(bsdf, to_light);
-      if (!(max_component(light_to_eye) > 0)) continue;
-      const size_t i = arena_.shadow.size();
-      arena_.shadow.resize(i + 1), arena_.shadow_pixel.resize(i + 1), arena_.shadow_light.resize(i + 1);
-      Rayf ray{spawn_origin(s.surface, to_light), to_light};
-      if (std::isfinite(distance)) {
-        // From the shifted origin to the light itself, in units of the segment.
-        const Vec3f segment = Vec3f(light.p_world - Vec3d(ray.origin));
-        ray.direction = segment, ray.t_max = 1;
-      }
-      arena_.shadow.set(i, ray);
-      arena_.shadow_pixel[i] = s.path.pixel, arena_.shadow_light[i] = light_to_eye;
-      tell([&](TraceObserver& observer) {
-        const Rgb all = reflected(bsdf, to_light), specular = reflected(without_diffuse(bsdf), to_light);
-        const auto index = uint32_t(&light - scene_.lights.data());
-        observer.ask({index, ray, distance, arriving, all - specular, specular});
-      });
-      if (i + 1 == kShadowLimit) trace_shadows(Coherence::incoherent);
+    for (uint32_t i = 0; i < scene_.lights.size(); ++i) {
+      const Light& light = scene_.lights[i];
+      if (light.track.empty())
+        add_light(s, i, light, bsdf, reflected);
+      else
+        add_light(s, i, at_time(light.track, time_of(s.path.pixel)), bsdf, reflected);
     }
+  }
+
+  /// `light`: that of the index, as it is at the ray's time.
+  template <class Bsdf, class Reflected>
+  void add_light(const Shading& s, uint32_t index, const Light& light, const Bsdf& bsdf, const Reflected& reflected) {
+    Vec3f to_light;
+    float distance = std::numeric_limits<float>::infinity();
+    const Rgb arriving = light_at(light, s.surface.p_world, to_light, distance);
+    if (!(max_component(arriving) > 0)) return;
+    const Rgb light_to_eye = s.weight * arriving * reflected(bsdf, to_light);
+    if (!(max_component(light_to_eye) > 0)) return;
+    const size_t i = arena_.shadow.size();
+    arena_.shadow.resize(i + 1), arena_.shadow_pixel.resize(i + 1), arena_.shadow_light.resize(i + 1);
+    Rayf ray{spawn_origin(s.surface, to_light), to_light};
+    if (std::isfinite(distance)) {
+      // From the shifted origin to the light itself, in units of the segment.
+      const Vec3f segment = Vec3f(light.p_world - Vec3d(ray.origin));
+      ray.direction = segment, ray.t_max = 1;
+    }
+    arena_.shadow.set(i, ray);
+    arena_.shadow_pixel[i] = s.path.pixel, arena_.shadow_light[i] = light_to_eye;
+    tell([&](TraceObserver& observer) {
+      const Rgb all = reflected(bsdf, to_light), specular = reflected(without_diffuse(bsdf), to_light);
+      observer.ask({index, ray, distance, arriving, all - specular, specular});
+    });
+    if (i + 1 == kShadowLimit) trace_shadows(Coherence::incoherent);
   }
 
   /// Colour x intensity x attenuation at a point (KHR_lights_punctual's formulas), and where the light is seen from
@@ -408,6 +431,7 @@ class Whitted {
   void trace_shadows(Coherence coherence) {
     if (arena_.shadow.size() == 0) return;
     arena_.shadow_rays += arena_.shadow.size();
+    set_times(arena_.shadow, [&](size_t i) { return arena_.shadow_pixel[i]; });
     log(coherence == Coherence::coherent ? WaveKind::camera_shadow : WaveKind::bounced_shadow, arena_.shadow);
     arena_.clock.enter(Phase::traversal);
     accelerated_.transmittance(arena_.shadow, coherence, arena_.visible);

@@ -49,6 +49,7 @@ struct WaveArena {
   RayWave shadow;
   Lanes<uint32_t> shadow_pixel;
   Lanes<Rgb> shadow_light, visible;
+  Lanes<float> time_of_pixel;              // of the shutter, of the samples at hand; of no elements where nothing moves
   std::array<uint64_t, 4> rays_by_kind{};  // by RayKind
   uint64_t shadow_rays = 0;
   PhaseClock clock;

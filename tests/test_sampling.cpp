@@ -30,6 +30,40 @@ TEST(SobolOwen, EveryAlignedRunOf2ToTheKPointsIsStratifiedInAllElementaryInterva
   }
 }
 
+TEST(SobolOwen, ItsThirdCoordinateIsStratifiedAsTheOthersAre) {
+  for (uint32_t seed = 0; seed < 20; ++seed)
+    for (uint32_t k = 0; k < 9; ++k)
+      for (uint32_t first : {0u, 1u << k, 6u << k}) {
+        std::vector<int> strata(1u << k);
+        for (uint32_t i = 0; i < 1u << k; ++i) {
+          const float z = third_sobol_owen(first + i, seed);
+          ASSERT_TRUE(z >= 0 && z < 1);
+          ++strata[size_t(z * float(1u << k))];
+        }
+        for (const int count : strata) EXPECT_EQ(count, 1);
+      }
+}
+
+TEST(SobolOwen, ItsThirdCoordinateKnowsNothingOfTheFirstTwo) {
+  // Of the first points of many seeds, and of many points of one seed.
+  const auto correlation = [](const auto& index, const auto& seed, bool of_y) {
+    constexpr uint32_t kCount = 4096;
+    double sum = 0;
+    for (uint32_t i = 0; i < kCount; ++i) {
+      const Vec2f p = sobol_owen(index(i), seed(i));
+      sum += (double(of_y ? p.y : p.x) - 0.5) * (double(third_sobol_owen(index(i), seed(i))) - 0.5);
+    }
+    return 12 * sum / kCount;
+  };
+  const auto zero = [](uint32_t) { return 0u; };
+  const auto each = [](uint32_t i) { return i; };
+  const auto mixed = [](uint32_t i) { return mix_bits(i); };
+  for (const bool of_y : {false, true}) {
+    EXPECT_NEAR(correlation(zero, mixed, of_y), 0, 0.06);
+    EXPECT_NEAR(correlation(each, zero, of_y), 0, 0.01);
+  }
+}
+
 TEST(SobolOwen, LiesInTheHalfOpenUnitSquare) {
   std::mt19937 rng(72);
   for (int i = 0; i < 100000; ++i) {
