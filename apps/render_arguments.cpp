@@ -47,6 +47,16 @@ CLI::Validator finite() {
           ""};
 }
 
+CLI::Validator duration() {
+  return {[](std::string& text) {
+            char* end = nullptr;
+            const double seconds = std::strtod(text.c_str(), &end);
+            const bool valid = end != text.c_str() && *end == 0 && std::isfinite(seconds) && seconds >= 0;
+            return valid ? "" : "'" + text + "' is not a time in seconds, 0 or more, like 0.02";
+          },
+          ""};
+}
+
 void add_frame_options(CLI::App& command, RenderArguments& arguments) {
   command
       .add_option_function<std::string>(
@@ -58,6 +68,12 @@ void add_frame_options(CLI::App& command, RenderArguments& arguments) {
       ->check(finite())
       ->check(CLI::PositiveNumber.description(""))
       ->capture_default_str();
+  command
+      .add_option("--shutter", arguments.shutter,
+                  "Motion blur: the shutter opens at the time, or at each frame's, and stays open for so long")
+      ->type_name("SECONDS")
+      ->check(duration())
+      ->default_str("0");
 }
 
 void add_picture_options(CLI::App& command, RenderArguments& arguments) {
@@ -224,6 +240,7 @@ void check_arguments(const RenderArguments& arguments) {
   const bool ids = arguments.options.integrator == Integrator::signature;
   if (arguments.view != ViewTransform::standard && image_format(arguments.output).linear)
     throw UsageError("--view: '" + arguments.output + "' stays scene-linear; views are for 8-bit files");
+  if (ids && arguments.shutter > 0) throw UsageError("--shutter: a signature shows one moment");
   if (ids && arguments.encoding.half) throw UsageError("--half: a signature holds 32-bit integers");
   if (!arguments.options.transparent) return;
   if (ids) throw UsageError("--transparent: a signature has no alpha");
@@ -239,6 +256,12 @@ RenderArguments frame_arguments(const RenderArguments& sequence, int frame) {
   return still;
 }
 
+RenderArguments still_arguments(const RenderArguments& arguments) {
+  RenderArguments still = arguments;
+  if (still.shutter > 0 && !still.time.time) still.time.time = 0;
+  return still;
+}
+
 std::string picture_options(const RenderArguments& arguments) {
   const RenderOptions& options = arguments.options;
   std::string text = "--size " + std::to_string(options.width) + "x" + std::to_string(options.height);
@@ -246,6 +269,7 @@ std::string picture_options(const RenderArguments& arguments) {
   if (!arguments.choice.variant.empty()) text += " --variant '" + arguments.choice.variant + "'";
   if (!arguments.time.animation.empty()) text += " --animation '" + arguments.time.animation + "'";
   if (arguments.time.time) text += " --time " + number(*arguments.time.time);
+  if (arguments.shutter > 0) text += " --shutter " + number(arguments.shutter);
   if (!arguments.camera.empty()) text += " --camera '" + arguments.camera + "'";
   text += options.integrator == Integrator::signature ? " --integrator signature" : " --integrator whitted";
   text += " --spp " + std::to_string(options.samples) + " --max-depth " + std::to_string(options.max_depth) +

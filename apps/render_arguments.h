@@ -24,6 +24,7 @@ struct RenderArguments {
   TimeChoice time;
   std::optional<FrameRange> frames;  // none: a still
   double fps = 24;                   // frames of a second
+  double shutter = 0;                // seconds for which it stays open from the time on; 0: it takes a moment
   std::string camera;                // index or name; empty: the scene's first
   RenderOptions options;
   bool watertight = false;
@@ -55,6 +56,9 @@ void check_arguments(const RenderArguments& arguments);
 
 /// The arguments of one frame of a sequence: a still at its time, in a file of its own.
 [[nodiscard]] RenderArguments frame_arguments(const RenderArguments& sequence, int frame);
+
+/// The arguments of a still: a shutter that opens without a time opens at 0 s.
+[[nodiscard]] RenderArguments still_arguments(const RenderArguments& arguments);
 
 /// The options that decide on the pixels, defaults too, as a command line would give them.
 [[nodiscard]] std::string picture_options(const RenderArguments& arguments);

@@ -20,6 +20,7 @@
 #include "apps/render_arguments.h"
 #include "core/error.h"
 #include "loaders/gltf_file.h"
+#include "loaders/record_motion.h"
 #include "renderer/framing.h"
 
 namespace alhazen {
@@ -165,11 +166,19 @@ struct Stage {
         loading(std::make_unique<ProgressReporter>(style_of(arguments), title_of(arguments.scene), budget->progress)),
         file(arguments.scene, print_warning, arguments.choice, arguments.time, budget),
         loaded(file.load(arguments.time.time.value_or(0))) {
+    if (arguments.shutter > 0 && !file.is_animated() && !arguments.quiet)
+      std::fprintf(stderr, "note: --shutter: no animation is played, so nothing moves\n");
     bake_single_instances(loaded.scene.geometry, file.moving_meshes());
     if (!sequence || !loaded.scene.cameras.empty() || !arguments.camera.empty()) return;
     const double aspect = double(arguments.options.width) / arguments.options.height;
     framing = framing_camera_of_all_times(file, loaded.scene, aspect);
     file.move(loaded.scene, *arguments.time.time);
+  }
+
+  /// From the arguments' time on, which is that of the scene.
+  void open_shutter(const RenderArguments& arguments) {
+    if (arguments.shutter > 0 && file.is_animated())
+      record_motion(file, loaded.scene, *arguments.time.time, arguments.shutter);
   }
 };
 
@@ -186,6 +195,7 @@ int render_still(const RenderArguments& arguments, Stage& stage, std::optional<i
   const int threads = thread_count(options);
   Scene& scene = stage.loaded.scene;
   PhaseSeconds seconds;
+  stage.open_shutter(arguments);
   const double aspect = double(options.width) / options.height;
   const Camera camera = stage.framing ? *stage.framing : pick_camera(scene, arguments.camera, aspect);
   set_up_lights(scene, camera, arguments);
@@ -229,8 +239,9 @@ int render_sequence(const RenderArguments& arguments) {
   return status;
 }
 
-int run_render(const RenderArguments& arguments) {
-  check_arguments(arguments);
+int run_render(const RenderArguments& given) {
+  check_arguments(given);
+  const RenderArguments arguments = given.frames ? given : still_arguments(given);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   size_t(thread_count(arguments.options)));
   if (arguments.frames) return render_sequence(arguments);
@@ -259,7 +270,8 @@ Command add_render_command(CLI::App& program) {
       "  alhazen render shoe.glb -o shoe.png --variant street --camera 1\n"
       "  alhazen render scene.glb -o scene.png --watertight\n"
       "  alhazen render fox.glb -o fox.png --animation Run --time 0.5\n"
-      "  alhazen render fox.glb -o 'run.####.exr' --animation Run --frames 0:23 --fps 24");
+      "  alhazen render fox.glb -o 'run.####.exr' --animation Run --frames 0:23 --fps 24\n"
+      "  alhazen render fox.glb -o fox.png --animation Run --time 0.5 --shutter 0.02 --spp 64");
   return {command, [arguments] { return run_render(*arguments); }};
 }
 

@@ -47,7 +47,7 @@ struct GltfFile::Impl {
   std::vector<Skin> skins;
   DeformationPlan plan;
   std::vector<std::vector<GltfPrimitive>> deformable;  // by mesh
-  std::vector<char> moving;                            // by Geometry's mesh
+  std::vector<char> moving, deforming;                 // by Geometry's mesh
   std::vector<Affine3d> world_from_node;               // at the time of the pose
 
   Impl(GltfSource checked, const SceneChoice& choice, const TimeChoice& time)
@@ -76,8 +76,9 @@ struct GltfFile::Impl {
     deformable = std::move(read.deformable);
     scene.geometry.meshes = std::move(read.meshes);
     scene.geometry.meshes.resize(plan.mesh_count);
-    moving.assign(plan.mesh_count, 0);
-    for (const Deformation& how : plan.all) moving[how.placed_as] = how.moves;
+    deforming.assign(plan.mesh_count, 0);
+    for (const Deformation& how : plan.all) deforming[how.placed_as] = how.moves;
+    moving = deforming;
     for (const uint32_t node : shown)
       if (plan.mesh_of_node[node] != kNone && moves.nodes[node]) moving[plan.mesh_of_node[node]] = 1;
   }
@@ -138,6 +139,7 @@ void GltfFile::move(Scene& scene, double seconds) {
   keep_places(impl.moving, scene.geometry.mesh_instances, now.geometry.mesh_instances);
   scene.geometry.mesh_instances = std::move(now.geometry.mesh_instances);
   scene.geometry.shape_instances = std::move(now.geometry.shape_instances);
+  scene.geometry.motion = {};
   scene.lights = std::move(now.lights), scene.cameras = std::move(now.cameras);
   scene.camera_index = std::move(now.camera_index);
   scene.ambient = now.ambient, scene.has_ambient = now.has_ambient;
@@ -146,6 +148,12 @@ void GltfFile::move(Scene& scene, double seconds) {
 }
 
 std::span<const char> GltfFile::moving_meshes() const { return impl_->moving; }
+
+std::span<const char> GltfFile::deforming_meshes() const { return impl_->deforming; }
+
+std::span<const char> GltfFile::moving_nodes() const { return impl_->moves.nodes; }
+
+bool GltfFile::is_animated() const { return !impl_->channels.empty(); }
 
 std::pair<double, double> GltfFile::time_span() const {
   const TimeSpan span = alhazen::time_span(impl_->channels);

@@ -35,11 +35,21 @@ class GltfFile {
   [[nodiscard]] LoadedScene load(double seconds);
 
   /// Takes a scene that load() gave, and whose meshes that do not move may have been baked, to another time. Lights,
-  /// cameras, ambient light and background are the file's again; what does not move stays as it is.
+  /// cameras, ambient light and background are the file's again; what does not move stays as it is. The shutter is
+  /// shut.
   void move(Scene& scene, double seconds);
 
   /// By mesh of the loaded scene, whether the animations change it or a node that shows it.
   [[nodiscard]] std::span<const char> moving_meshes() const;
+
+  /// By mesh of the loaded scene, whether the animations change the mesh itself.
+  [[nodiscard]] std::span<const char> deforming_meshes() const;
+
+  /// By node, whether the animations change its place in the world, or whether it is shown.
+  [[nodiscard]] std::span<const char> moving_nodes() const;
+
+  /// Whether an animation is played that sets anything.
+  [[nodiscard]] bool is_animated() const;
 
   /// Seconds from the first key of what is animated to the last; 0 and 0 where nothing is.
   [[nodiscard]] std::pair<double, double> time_span() const;

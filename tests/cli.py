@@ -149,6 +149,37 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(result.returncode, 2, options)
             self.assertIn(expected, result.stderr)
 
+    def test_an_open_shutter_blurs_what_moves(self):
+        scene = self.moving_triangle()
+        date = {"SOURCE_DATE_EPOCH": "1700000000"}
+
+        def picture(*options, name="p.png"):
+            result = run("render", scene, "-o", self.file(name), "--size", "48x32", "--spp", "4", "--quiet", *options, **date)
+            self.assertEqual((result.returncode, result.stderr), (0, ""), options)
+            with open(self.file(name.replace("#", "0")), "rb") as file:
+                return file.read()
+
+        still, blurred = picture("--time", "0"), picture("--time", "0", "--shutter", "0.25")
+        self.assertEqual(picture("--time", "0", "--shutter", "0"), still)
+        self.assertNotEqual(still, blurred)
+        self.assertEqual(picture("--shutter", "0.25"), blurred)  # opens at 0 s where no time is given
+        self.assertEqual(picture("--frames", "0", "--shutter", "0.25", name="f.#.png"), blurred)
+        self.assertEqual(picture("--time", "0", "--shutter", "0.25", "--threads", "1", "--tile-size", "8"), blurred)
+
+    def test_a_shutter_where_nothing_moves_is_a_note(self):
+        result = self.render("a.exr", "--shutter", "0.5")
+        self.assertEqual(result.returncode, 0)
+        self.assertEqual(result.stderr, "note: --shutter: no animation is played, so nothing moves\n")
+        self.assertEqual(self.render("a.exr", "--shutter", "0.5", "--quiet").stderr, "")
+
+    def test_shutters_that_cannot_be_are_wrong_usage(self):
+        for value in ("-0.1", "nan", "inf", "long", "1s"):
+            result = self.render("a.exr", "--shutter=" + value)
+            self.assertEqual(result.returncode, 2, value)
+            self.assertIn("--shutter: '" + value + "' is not a time in seconds", result.stderr)
+        result = self.render("a.exr", "--shutter", "1", "--integrator", "signature")
+        self.assertEqual((result.returncode, "one moment" in result.stderr), (2, True))
+
     def test_misspelled_words_bring_the_nearest(self):
         for arguments, expected in (
             (["rendr", SCENE], "did you mean 'render'?"),

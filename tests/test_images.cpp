@@ -146,7 +146,14 @@ struct Reference {
   fs::path scene, picture;
 
   [[nodiscard]] bool is_signature() const { return picture.stem().string().ends_with("-signature"); }
-  [[nodiscard]] std::string options() const { return is_signature() ? "--integrator signature" : "--half"; }
+  /// Colours: what NAME.options beside the scene says, where there is one.
+  [[nodiscard]] std::string options() const {
+    if (is_signature()) return "--integrator signature";
+    std::string line;
+    std::ifstream in(fs::path(scene).replace_extension(".options"));
+    std::getline(in, line);
+    return line;
+  }
 };
 
 void PrintTo(const Reference& reference, std::ostream* out) { *out << reference.picture; }
@@ -188,8 +195,7 @@ template <class T>
 void expect_like(const Reference& reference, const fs::path& folder, const Tolerance& tolerance, const Mask& mask) {
   const auto expected = read_picture<T>(reference.picture);
   const fs::path picture = kOutput / folder / reference.picture.filename();
-  const std::string options = reference.is_signature() ? reference.options() : "";
-  ASSERT_TRUE(rendered(reference.scene, picture, expected.width, expected.height, options));
+  ASSERT_TRUE(rendered(reference.scene, picture, expected.width, expected.height, reference.options()));
   const auto found = read_picture<T>(picture);
   const Comparison<T> comparison = compare(found, expected, tolerance, mask);
   if (!comparison.different.empty()) std::printf("%s\n", comparison.listing().c_str());
@@ -203,7 +209,8 @@ class SceneOfOurOwn : public ::testing::TestWithParam<Reference> {};
 TEST_P(SceneOfOurOwn, LooksLikeItsReference) {
   const Reference& reference = GetParam();
   if (std::getenv("ALHAZEN_RENEW_REFERENCES")) {
-    ASSERT_TRUE(rendered(reference.scene, reference.picture, kWidth, kHeight, reference.options()));
+    ASSERT_TRUE(rendered(reference.scene, reference.picture, kWidth, kHeight,
+                         reference.options() + (reference.is_signature() ? "" : " --half")));
     GTEST_SKIP() << "renewed " << reference.picture;
   }
   ASSERT_TRUE(fs::exists(reference.picture)) << "docs/testing.md says how to make it";
