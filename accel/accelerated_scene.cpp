@@ -1,11 +1,14 @@
 #include "accel/accelerated_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "accel/embree.h"
@@ -39,7 +42,7 @@ struct AcceleratedScene::Impl {
   std::vector<uint32_t> object_of_top;  // by number in `top`
   std::vector<RTCScene> mesh_scenes;
   RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
+  std::array<RTCScene, 2> scenes{};  // what stands still, and what moves from frame to frame; null where there is none
   bool has_instances = false;
   float reach = embree::kReach;  // of rays' coordinates
   bool has_filters = false;      // surfaces that let some light through
@@ -47,8 +50,20 @@ struct AcceleratedScene::Impl {
   int incoherent_width = 4;      // of others'
   std::atomic<uint64_t> bytes{0};
 
+  const Geometry* geometry = nullptr;
+  BuildOptions options;
+  std::vector<uint32_t> uses;  // by mesh
+  struct {
+    size_t top, shape_groups, instance_groups, triangle_groups;
+    bool has_instances;
+    float reach;
+  } standing{};                      // how many of the lists' elements, and what else, does not change in update()
+  std::vector<uint64_t> identities;  // of objects, in their order
+  std::vector<Opacity> opacity;
+
   ~Impl() {
-    if (scene) rtcReleaseScene(scene);
+    for (RTCScene s : scenes)
+      if (s) rtcReleaseScene(s);
     for (RTCScene s : mesh_scenes)
       if (s) rtcReleaseScene(s);
     if (device) rtcReleaseDevice(device);
@@ -58,12 +73,12 @@ struct AcceleratedScene::Impl {
     uint32_t object, part, primitive;
   };
   /// `u` holds a shape's face, which takes the place of the part.
-  [[nodiscard]] Ids ids(uint32_t instance, uint32_t geometry, uint32_t primitive, float u) const {
+  [[nodiscard]] Ids ids(uint32_t instance, uint32_t geometry_id, uint32_t primitive, float u) const {
     if (instance != RTC_INVALID_GEOMETRY_ID) {
       const uint32_t object = instance & kInGroup ? instance & ~kInGroup : top[instance].object;
-      return {object, geometry, primitive};
+      return {object, geometry_id, primitive};
     }
-    const TopEntry& entry = top[geometry];
+    const TopEntry& entry = top[geometry_id];
     if (entry.kind == TopEntry::Kind::shapes) return {shape_groups[entry.part]->objects[primitive], uint32_t(u), 0};
     if (entry.kind == TopEntry::Kind::moving_shapes)
       return {moving_shapes[entry.part]->members[primitive].object, uint32_t(u), 0};
@@ -143,7 +158,8 @@ struct AcceleratedScene::Traversal {
       choose_lanes<width>(impl, wave, first, lanes, valid);
       for (int i = 0; i < width; ++i) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
       load_rays(wave, first, width, packet.ray);
-      embree::intersect<width>(valid, impl.scene, query, packet);
+      for (RTCScene scene : impl.scenes)
+        if (scene) embree::intersect<width>(valid, scene, query, packet);
       constexpr size_t kBytes = size_t(width) * sizeof(float);
       std::memcpy(&hits.t[first], packet.ray.tfar, kBytes);
       std::memcpy(&hits.u[first], packet.hit.u, kBytes), std::memcpy(&hits.v[first], packet.hit.v, kBytes);
@@ -168,7 +184,8 @@ struct AcceleratedScene::Traversal {
       alignas(64) int valid[width];
       choose_lanes<width>(impl, wave, first, lanes, valid);
       load_rays(wave, first, width, packet);
-      embree::occluded<width>(valid, impl.scene, query, packet);
+      for (RTCScene scene : impl.scenes)  // what is blocked in the first is not looked at in the second
+        if (scene) embree::occluded<width>(valid, scene, query, packet);
       for (int i = 0; i < lanes; ++i)
         if (packet.tfar[i] < 0) visible[first + size_t(i)] = Rgb(0.0f);
     }
@@ -195,11 +212,19 @@ struct AcceleratedScene::Traversal {
       load_rays(wave, first, width, packet.rays.ray);
     }
     Query query(impl, call.coherence, visible.data());
+    const auto intersect = [&](Packet& packet) {
+      for (RTCScene scene : impl.scenes)
+        if (scene) embree::intersect<width>(packet.valid, scene, query, packet.rays);
+    };
+    const auto occlude = [&](Packet& packet) {
+      for (RTCScene scene : impl.scenes)
+        if (scene) embree::occluded<width>(packet.valid, scene, query, packet.rays.ray);
+    };
     const auto start = std::chrono::steady_clock::now();
     if (call.shadow)
-      for (Packet& packet : packets) embree::occluded<width>(packet.valid, impl.scene, query, packet.rays.ray);
+      for (Packet& packet : packets) occlude(packet);
     else
-      for (Packet& packet : packets) embree::intersect<width>(packet.valid, impl.scene, query, packet.rays);
+      for (Packet& packet : packets) intersect(packet);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
@@ -271,25 +296,164 @@ struct AcceleratedScene::Traversal {
   }
 
   /// `track`: of the instance, null where it stands still at `m`.
-  static void attach_instance(Impl& impl, uint32_t id, RTCScene mesh, const Affine3d& m, const Track<Affine3d>* track) {
+  static RTCGeometry new_instance(const Impl& impl, RTCScene mesh, const Affine3d& m, const Track<Affine3d>* track) {
     RTCGeometry g = embree::new_geometry(impl.device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(g, mesh);
     if (track) rtcSetGeometryTimeStepCount(g, unsigned(track->size()));
     for (unsigned step = 0; step < (track ? track->size() : 1); ++step)
       set_transform(g, step, track ? (*track)[step] : m);
     rtcCommitGeometry(g);
-    rtcAttachGeometryByID(impl.scene, g, id);
-    rtcReleaseGeometry(g);
+    return g;
   }
 
-  static void attach_instances(Impl& impl, uint32_t id, const InstanceGroup& group) {
-    RTCGeometry g = new_instance_geometry(impl.device, group);
-    rtcAttachGeometryByID(impl.scene, g, id);
+  /// As the next of the top level's geometries.
+  static void attach(Impl& impl, RTCScene scene, RTCGeometry g, const TopEntry& entry) {
+    rtcAttachGeometryByID(scene, g, unsigned(impl.top.size()));
     rtcReleaseGeometry(g);
+    impl.top.push_back(entry);
+  }
+
+  static bool is_set(std::span<const char> flags, size_t i) { return i < flags.size() && flags[i] != 0; }
+
+  static RTCScene mesh_scene(Impl& impl, uint32_t index) {
+    RTCScene& shared = impl.mesh_scenes[index];
+    if (shared) return shared;
+    const Mesh& mesh = impl.geometry->meshes[index];
+    shared = new_scene(impl, impl.options);
+    for (uint32_t part = 0; part < mesh.parts.size(); ++part)
+      if (!mesh.parts[part].triangles.empty())
+        attach_part(impl, shared, part, mesh, track_of_mesh(*impl.geometry, index), part, kNone,
+                    impl.options.watertight);
+    rtcCommitScene(shared);
+    return shared;
+  }
+
+  /// The parts of a mesh that is placed once, in world space.
+  static void attach_baked(Impl& impl, RTCScene scene, uint32_t object) {
+    const uint32_t index = impl.geometry->mesh_instances[object].mesh;
+    const Mesh& mesh = impl.geometry->meshes[index];
+    for (uint32_t part = 0; part < mesh.parts.size(); ++part) {
+      if (mesh.parts[part].triangles.empty()) continue;
+      attach_part(impl, scene, uint32_t(impl.top.size()), mesh, track_of_mesh(*impl.geometry, index), part, object,
+                  impl.options.watertight);
+      impl.top.push_back({TopEntry::Kind::baked_part, object, part});
+    }
+  }
+
+  /// The instance, with those after it that go into one group with it: how many these are.
+  static uint32_t attach_instances(Impl& impl, RTCScene scene, uint32_t object) {
+    const Geometry& geometry = *impl.geometry;
+    const MeshInstance& instance = geometry.mesh_instances[object];
+    const Track<Affine3d>* const places = track_of_object(geometry, object);
+    const RTCScene mesh = mesh_scene(impl, instance.mesh);
+    impl.has_instances = true;
+    // Of a mesh that also deforms, Embree bounds the two motions one by one; their product reaches further.
+    const float reach = !places                                  ? reach_around_instance(instance.world_from_object)
+                        : track_of_mesh(geometry, instance.mesh) ? 0
+                                                                 : reach_around_instance(*places);
+    const uint32_t alike = group_size(geometry, object), count = alike >= kLeastInstanceGroup ? alike : 1;
+    if (count > 1 || reach == 0) {
+      impl.instance_groups.push_back(
+          std::make_unique<InstanceGroup>(InstanceGroup{&instance, object, count, mesh, places}));
+      attach(impl, scene, new_instance_geometry(impl.device, *impl.instance_groups.back()),
+             {TopEntry::Kind::instances, object, 0});
+    } else {
+      impl.reach = std::min(impl.reach, reach);
+      attach(impl, scene, new_instance(impl, mesh, instance.world_from_object, places),
+             {TopEntry::Kind::instance, object, 0});
+    }
+    return count;
+  }
+
+  static bool is_baked(const Impl& impl, uint32_t object) {
+    const MeshInstance& instance = impl.geometry->mesh_instances[object];
+    return impl.uses[instance.mesh] == 1 && instance.world_from_object == Affine3d{} &&
+           !track_of_object(*impl.geometry, object);
+  }
+
+  /// A scene of what stands still, or of what moves from frame to frame; null where there is nothing.
+  static RTCScene build(Impl& impl, bool moving) {
+    const Geometry& geometry = *impl.geometry;
+    const size_t first = impl.top.size();
+    RTCScene scene = new_scene(impl, impl.options);
+    for (uint32_t object = 0; object < geometry.mesh_instances.size();) {
+      if (is_set(impl.options.moving.meshes, geometry.mesh_instances[object].mesh) != moving)
+        ++object;
+      else if (is_baked(impl, object))
+        attach_baked(impl, scene, object++);
+      else
+        object += attach_instances(impl, scene, object);
+    }
+    const auto wanted = [&](const ShapeInstance& shape) {
+      return is_set(impl.options.moving.nodes, shape.node) == moving;
+    };
+    for (auto& group : group_shapes(geometry, impl.filter, wanted)) {
+      attach(impl, scene, new_shape_geometry(impl.device, *group),
+             {TopEntry::Kind::shapes, kNone, uint32_t(impl.shape_groups.size())});
+      impl.shape_groups.push_back(std::move(group));
+    }
+    if (moving || impl.options.moving.nodes.empty()) attach_blurred_shapes(impl, scene);
+    if (impl.top.size() == first) return rtcReleaseScene(scene), nullptr;
+    rtcCommitScene(scene);
+    return scene;
+  }
+
+  static void attach_blurred_shapes(Impl& impl, RTCScene scene) {
+    impl.moving_shapes = moving_shapes(*impl.geometry, impl.filter);
+    for (uint32_t k = 0; k < impl.moving_shapes.size(); ++k)
+      attach(impl, scene, new_moving_geometry(impl.device, *impl.moving_shapes[k]),
+             {TopEntry::Kind::moving_shapes, kNone, k});
+  }
+
+  /// Of those that move: their scenes stay when their places change.
+  static void build_rigid_meshes(Impl& impl) {
+    const MovingParts& moving = impl.options.moving;
+    for (uint32_t object = 0; object < impl.geometry->mesh_instances.size(); ++object) {
+      const uint32_t mesh = impl.geometry->mesh_instances[object].mesh;
+      if (is_set(moving.meshes, mesh) && !is_set(moving.deforming, mesh)) (void)mesh_scene(impl, mesh);
+    }
+  }
+
+  static void build_moving(Impl& impl) {
+    impl.scenes[1] =
+        impl.options.moving.meshes.empty() && impl.options.moving.nodes.empty() ? nullptr : build(impl, true);
+    impl.object_of_top.clear();
+    for (const TopEntry& entry : impl.top) impl.object_of_top.push_back(entry.object);
+    if (const RTCError error = rtcGetDeviceError(impl.device); error != RTC_ERROR_NONE)
+      throw Error("building the hierarchy: Embree error " + std::to_string(int(error)), ExitStatus::internal);
+  }
+
+  /// Leaves what stands still.
+  static void forget_moving(Impl& impl) {
+    if (impl.scenes[1]) rtcReleaseScene(std::exchange(impl.scenes[1], nullptr));
+    for (size_t i = 0; i < impl.mesh_scenes.size(); ++i)
+      if (is_set(impl.options.moving.deforming, i) && impl.mesh_scenes[i])
+        rtcReleaseScene(std::exchange(impl.mesh_scenes[i], nullptr));
+    impl.top.resize(impl.standing.top), impl.shape_groups.resize(impl.standing.shape_groups);
+    impl.instance_groups.resize(impl.standing.instance_groups);
+    impl.triangle_groups.resize(impl.standing.triangle_groups);
+    impl.has_instances = impl.standing.has_instances, impl.reach = impl.standing.reach;
+  }
+
+  /// The lists that stand in place of those that were read.
+  static void find_instances_again(Impl& impl) {
+    for (auto& group : impl.instance_groups) group->first = &impl.geometry->mesh_instances[group->first_object];
+    for (auto& group : impl.shape_groups) alhazen::find_instances_again(*impl.geometry, *group);
   }
 };
 
 namespace {
+
+/// What each object is, wherever it is.
+std::vector<uint64_t> identities(const Geometry& geometry) {
+  std::vector<uint64_t> all;
+  for (const MeshInstance& placed : geometry.mesh_instances) all.push_back(uint64_t{placed.node} << 32 | placed.mesh);
+  for (const ShapeInstance& placed : geometry.shape_instances) {
+    all.push_back(uint64_t{placed.node} << 32 | placed.shape);
+    all.push_back(placed.material);
+  }
+  return all;
+}
 
 /// Whether rays that run apart are faster one by one: where most primitives are shapes, and many. A packet would then
 /// call each shape for a lane or two. Triangles are faster in packets all the same.
@@ -315,71 +479,33 @@ AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter
   rtcSetDeviceMemoryMonitorFunction(impl.device, Traversal::count_bytes, &impl);
   impl.width = embree::packet_width(impl.device);
   impl.incoherent_width = prefers_single_rays(geometry) ? 1 : impl.width;
-  impl.scene = Traversal::new_scene(impl, options);
+  impl.geometry = &geometry, impl.options = options;
   impl.mesh_scenes.assign(geometry.meshes.size(), nullptr);
+  impl.uses.assign(geometry.meshes.size(), 0);
+  for (const MeshInstance& instance : geometry.mesh_instances) ++impl.uses[instance.mesh];
+  impl.opacity.assign(filter.opacity.begin(), filter.opacity.end());
+  if (!options.moving.nodes.empty()) impl.identities = identities(geometry);
 
-  std::vector<uint32_t> uses(geometry.meshes.size(), 0);
-  for (const MeshInstance& instance : geometry.mesh_instances) ++uses[instance.mesh];
+  impl.scenes[0] = Traversal::build(impl, false);
+  Traversal::build_rigid_meshes(impl);
+  impl.standing = {impl.top.size(),
+                   impl.shape_groups.size(),
+                   impl.instance_groups.size(),
+                   impl.triangle_groups.size(),
+                   impl.has_instances,
+                   impl.reach};
+  Traversal::build_moving(impl);
+}
 
-  for (uint32_t object = 0; object < geometry.mesh_instances.size(); ++object) {
-    const MeshInstance& instance = geometry.mesh_instances[object];
-    const Mesh& mesh = geometry.meshes[instance.mesh];
-    const Track<Affine3d>* const places = track_of_object(geometry, object);
-    const Track<MeshPose>* const poses = track_of_mesh(geometry, instance.mesh);
-    if (uses[instance.mesh] == 1 && instance.world_from_object == Affine3d{} && !places) {
-      for (uint32_t part = 0; part < mesh.parts.size(); ++part) {
-        if (mesh.parts[part].triangles.empty()) continue;
-        Traversal::attach_part(impl, impl.scene, uint32_t(impl.top.size()), mesh, poses, part, object,
-                               options.watertight);
-        impl.top.push_back({TopEntry::Kind::baked_part, object, part});
-      }
-      continue;
-    }
-    RTCScene& shared = impl.mesh_scenes[instance.mesh];
-    if (!shared) {
-      shared = Traversal::new_scene(impl, options);
-      for (uint32_t part = 0; part < mesh.parts.size(); ++part)
-        if (!mesh.parts[part].triangles.empty())
-          Traversal::attach_part(impl, shared, part, mesh, poses, part, kNone, options.watertight);
-      rtcCommitScene(shared);
-    }
-    impl.has_instances = true;
-    const auto id = uint32_t(impl.top.size());
-    // Of a mesh that also deforms, Embree bounds the two motions one by one; their product reaches further.
-    const float reach = !places ? reach_around_instance(instance.world_from_object)
-                        : poses ? 0
-                                : reach_around_instance(*places);
-    const uint32_t alike = group_size(geometry, object), count = alike >= kLeastInstanceGroup ? alike : 1;
-    if (count > 1 || reach == 0) {
-      impl.instance_groups.push_back(
-          std::make_unique<InstanceGroup>(InstanceGroup{&instance, object, count, shared, places}));
-      Traversal::attach_instances(impl, id, *impl.instance_groups.back());
-      impl.top.push_back({TopEntry::Kind::instances, object, 0});
-      object += count - 1;
-      continue;
-    }
-    impl.reach = std::min(impl.reach, reach);
-    Traversal::attach_instance(impl, id, shared, instance.world_from_object, places);
-    impl.top.push_back({TopEntry::Kind::instance, object, 0});
-  }
-  impl.shape_groups = group_shapes(geometry, filter);
-  for (uint32_t k = 0; k < impl.shape_groups.size(); ++k) {
-    RTCGeometry g = new_shape_geometry(impl.device, *impl.shape_groups[k]);
-    rtcAttachGeometryByID(impl.scene, g, unsigned(impl.top.size()));
-    rtcReleaseGeometry(g);
-    impl.top.push_back({TopEntry::Kind::shapes, kNone, k});
-  }
-  impl.moving_shapes = moving_shapes(geometry, filter);
-  for (uint32_t k = 0; k < impl.moving_shapes.size(); ++k) {
-    RTCGeometry g = new_moving_geometry(impl.device, *impl.moving_shapes[k]);
-    rtcAttachGeometryByID(impl.scene, g, unsigned(impl.top.size()));
-    rtcReleaseGeometry(g);
-    impl.top.push_back({TopEntry::Kind::moving_shapes, kNone, k});
-  }
-  for (const TopEntry& entry : impl.top) impl.object_of_top.push_back(entry.object);
-  rtcCommitScene(impl.scene);
-  if (const RTCError error = rtcGetDeviceError(impl.device); error != RTC_ERROR_NONE)
-    throw Error("building the hierarchy: Embree error " + std::to_string(int(error)), ExitStatus::internal);
+bool AcceleratedScene::update(const SurfaceFilter& filter) {
+  Impl& impl = *impl_;
+  if (impl.options.moving.nodes.empty()) return true;
+  if (identities(*impl.geometry) != impl.identities || !std::ranges::equal(filter.opacity, impl.opacity)) return false;
+  impl.filter = filter;
+  Traversal::forget_moving(impl);
+  Traversal::find_instances_again(impl);
+  Traversal::build_moving(impl);
+  return true;
 }
 
 AcceleratedScene::~AcceleratedScene() = default;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 
 #include "accel/geometry.h"
@@ -10,11 +11,20 @@
 
 namespace alhazen {
 
+/// What may be elsewhere, or of another form, when `update` is called; empty lists: nothing. They must outlive the
+/// scene.
+struct MovingParts {
+  std::span<const char> meshes;     // by mesh: itself, or a place of it
+  std::span<const char> deforming;  // by mesh: itself
+  std::span<const char> nodes;      // by glTF node: its place
+};
+
 struct BuildOptions {
   bool robust = true;  // watertight triangle tests: 13 to 27 % of traversal, and no ray slips between two triangles
   int threads = 0;     // for the build; 0: all
   // Triangles of our own in place of Embree's: closed meshes have no leaks, t is rounded once. Several times slower.
   bool watertight = false;
+  MovingParts moving{};
 };
 
 /// One way to ask Embree about a wave.
@@ -24,14 +34,19 @@ struct BareCall {
   Coherence coherence = Coherence::incoherent;
 };
 
-/// Immutable once built, so every query is safe from any thread. `geometry` and the filter's data must outlive it:
-/// vertices, indices and shapes are read in place.
+/// Immutable but for `update`, so every query is safe from any thread. `geometry` and the filter's data must outlive
+/// it: vertices, indices and shapes are read in place.
 class AcceleratedScene {
  public:
   /// Builds the hierarchies on the calling thread and TBB's workers. Throws `Error` naming the mesh
   /// or shape that Embree refuses.
   AcceleratedScene(const Geometry& geometry, const SurfaceFilter& filter, const BuildOptions& options = {});
   ~AcceleratedScene();
+
+  /// Takes what moves to where the geometry has it now, with the same bits as if all were built anew, and keeps what is
+  /// built of the rest. False, and nothing is done, where objects have come or gone, or surfaces let light through that
+  /// did not, or the other way: build anew. `filter` is as the constructor's. Not while rays are traced.
+  [[nodiscard]] bool update(const SurfaceFilter& filter);
   AcceleratedScene(const AcceleratedScene&) = delete;
   AcceleratedScene& operator=(const AcceleratedScene&) = delete;
 

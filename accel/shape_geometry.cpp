@@ -198,12 +198,13 @@ void check_reach(const Geometry& geometry, uint32_t object, const Bounds3d& worl
                 ExitStatus::input);
 }
 
-std::vector<std::unique_ptr<ShapeGroup>> group_shapes(const Geometry& geometry, const SurfaceFilter& filter) {
+std::vector<std::unique_ptr<ShapeGroup>> group_shapes(const Geometry& geometry, const SurfaceFilter& filter,
+                                                      const std::function<bool(const ShapeInstance&)>& wanted) {
   std::vector<std::unique_ptr<ShapeGroup>> groups(std::variant_size_v<Shape>);
   for (uint32_t i = 0; i < geometry.shape_instances.size(); ++i) {
     const auto object = uint32_t(geometry.mesh_instances.size()) + i;
-    if (track_of_object(geometry, object)) continue;
     const ShapeInstance& instance = geometry.shape_instances[i];
+    if (track_of_object(geometry, object) || !wanted(instance)) continue;
     const Shape& shape = geometry.shapes[instance.shape];
     auto& group = groups[shape.index()];
     if (!group) group = std::make_unique<ShapeGroup>(ShapeGroup{filter, {}, {}, {}});
@@ -222,6 +223,11 @@ std::vector<std::unique_ptr<ShapeGroup>> group_shapes(const Geometry& geometry, 
   }
   std::erase_if(groups, [](const auto& group) { return group->members.empty(); });
   return groups;
+}
+
+void find_instances_again(const Geometry& geometry, ShapeGroup& group) {
+  for (size_t k = 0; k < group.members.size(); ++k)
+    group.members[k].placed.world_from_object = &shape_instance(geometry, group.objects[k]).world_from_object;
 }
 
 RTCGeometry new_shape_geometry(RTCDevice device, const ShapeGroup& group) {

@@ -1,6 +1,7 @@
 // Analytic shapes as Embree user geometry: one geometry for each kind of shape, one packet callback for each query.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -24,10 +25,13 @@ struct ShapeGroup {
   std::vector<uint32_t> objects;   // Geometry's object numbers
 };
 
-/// The scene's shapes that stand still, by kind; kinds without members are left out. Throws `Error` naming the node of
-/// a shape that reaches further than traversal can hold.
-[[nodiscard]] std::vector<std::unique_ptr<ShapeGroup>> group_shapes(const Geometry& geometry,
-                                                                    const SurfaceFilter& filter);
+/// Those of the scene's shapes that are wanted, and stand still while the shutter is open, by kind; kinds without
+/// members are left out. Throws `Error` naming the node of a shape that reaches further than traversal can hold.
+[[nodiscard]] std::vector<std::unique_ptr<ShapeGroup>> group_shapes(
+    const Geometry& geometry, const SurfaceFilter& filter, const std::function<bool(const ShapeInstance&)>& wanted);
+
+/// Takes the maps from the instances as they are listed now, at the same places.
+void find_instances_again(const Geometry& geometry, ShapeGroup& group);
 
 /// A committed user geometry over the group, which must outlive it.
 [[nodiscard]] RTCGeometry new_shape_geometry(RTCDevice device, const ShapeGroup& group);

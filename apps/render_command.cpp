@@ -159,6 +159,8 @@ struct Stage {
   GltfFile file;
   LoadedScene loaded;
   std::optional<Camera> framing;  // where no camera is in the file
+  std::vector<Opacity> opacity;
+  std::unique_ptr<AcceleratedScene> accelerated;  // of the frame before
 
   /// At the time of the arguments; other times follow in a sequence.
   Stage(const RenderArguments& arguments, bool sequence)
@@ -173,6 +175,18 @@ struct Stage {
     const double aspect = double(arguments.options.width) / arguments.options.height;
     framing = framing_camera_of_all_times(file, loaded.scene, aspect);
     file.move(loaded.scene, *arguments.time.time);
+  }
+
+  /// Of what is built for the frame before, all that does not move is kept.
+  const AcceleratedScene& accelerate(const RenderArguments& arguments, int threads) {
+    const SurfaceFilter filter = surface_filter(loaded.scene, opacity);
+    if (accelerated && accelerated->update(filter)) return *accelerated;
+    accelerated.reset();
+    MovingParts moving;
+    if (file.is_animated()) moving = {file.moving_meshes(), file.deforming_meshes(), file.moving_nodes()};
+    const BuildOptions options{.threads = threads, .watertight = arguments.watertight, .moving = moving};
+    accelerated = build_scene(loaded, filter, options);
+    return *accelerated;
   }
 
   /// From the arguments' time on, which is that of the scene.
@@ -201,13 +215,11 @@ int render_still(const RenderArguments& arguments, Stage& stage, std::optional<i
   set_up_lights(scene, camera, arguments);
   seconds.load = watch.lap();
 
-  std::vector<Opacity> opacity;
-  const SurfaceFilter filter = surface_filter(scene, opacity);
-  const auto accelerated = build_scene(stage.loaded, filter, {.threads = threads, .watertight = arguments.watertight});
+  const AcceleratedScene& accelerated = stage.accelerate(arguments, threads);
   stage.loading.reset();
   seconds.build = watch.lap();
 
-  RenderResult result = render_with_progress(arguments, scene, *accelerated, camera);
+  RenderResult result = render_with_progress(arguments, scene, accelerated, camera);
   seconds.render = watch.lap();
   if (g_control.dropped_samples > 0)
     print_warning(std::to_string(g_control.dropped_samples) + " samples were not finite and left out");

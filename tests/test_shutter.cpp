@@ -303,6 +303,72 @@ TEST(Shutter, WhatVanishesWhileItIsOpenIsAsAtTheOpening) {
   EXPECT_TRUE(loaded.scene.geometry.motion.empty());
 }
 
+// ---- From frame to frame ----
+
+/// Meshes and shapes that stand, move, deform and do both; mirrors; a mesh in two places.
+MovingScene varied_scene() {
+  MovingScene scene(3);
+  const int mirror = scene.phong({{"diffuseFactor", {0.5, 0.5, 0.5}}, {"reflectionFactor", {0.5, 0.5, 0.5}}});
+  const int standing = scene.rectangle(9, 9, json::object(), mirror);
+  scene.root["nodes"][size_t(standing)]["translation"] = {0, 0, -1};
+  scene.turn(scene.rectangle(5, 1, json::object(), mirror), {0, 150, 300});
+  const int delta = scene.vec3({0, 0, 0, 1.5f, 1.5f, 0, -2, 1, 0, 0, 0, 0});
+  const int morphing = scene.rectangle(2, 1, {{"targets", {{{"POSITION", delta}}}}}, mirror);
+  scene.animate(morphing, "weights", {0, 1, 0.2f}, 1);
+  scene.move(morphing, {-2, -2, 0.5f, 2, -2, 0.5f});
+  scene.add("nodes", {{"mesh", 0}, {"translation", {1, 1, 0.2}}, {"scale", {0.1, 0.1, 0.1}}});
+  scene.move(scene.shape({{"sphere", {{"radius", 0.7}}}}, json::object(), mirror), {-2, 0, 1, 2, 1, 1});
+  scene.shape({{"sphere", {{"radius", 0.5}}}}, {{"translation", {0, -1, 1}}}, mirror);
+  (void)scene.light({{"translation", {0, 3, 5}}});
+  return scene;
+}
+
+void expect_frames_as_built_anew(bool watertight, double shutter) {
+  Stage stage(varied_scene());
+  const MovingParts moving{stage.file.moving_meshes(), stage.file.deforming_meshes(), stage.file.moving_nodes()};
+  const BuildOptions options{.watertight = watertight, .moving = moving};
+  std::vector<Opacity> opacity, opacity_again;
+  std::unique_ptr<AcceleratedScene> kept;
+  const auto pixels = [&](const AcceleratedScene& accelerated) {
+    RenderControl control;
+    return render(stage.scene(), accelerated, stage.scene().cameras[0], size(60, 45, 2), control).color.pixels;
+  };
+  for (const double time : {0.0, 0.3, 0.31, 0.9, 1.0, 0.1}) {
+    stage.file.move(stage.scene(), time);
+    if (shutter > 0) record_motion(stage.file, stage.scene(), time, shutter);
+    const SurfaceFilter filter = surface_filter(stage.scene(), opacity);
+    if (kept)
+      ASSERT_TRUE(kept->update(filter));
+    else
+      kept = std::make_unique<AcceleratedScene>(stage.scene().geometry, filter, options);
+    const SurfaceFilter filter_again = surface_filter(stage.scene(), opacity_again);
+    const AcceleratedScene anew(stage.scene().geometry, filter_again, options);
+    EXPECT_EQ(pixels(*kept), pixels(anew)) << time;
+  }
+}
+
+TEST(Frames, KeepWhatStandsStillAndLookAsIfBuiltAnew) {
+  expect_frames_as_built_anew(false, 0);
+  expect_frames_as_built_anew(true, 0);
+}
+
+TEST(Frames, DoSoWithMotionBlurToo) { expect_frames_as_built_anew(false, 0.2); }
+
+TEST(Frames, AreBuiltAnewWhereObjectsOrOpacitiesAreOthers) {
+  Stage stage(varied_scene());
+  const MovingParts moving{stage.file.moving_meshes(), stage.file.deforming_meshes(), stage.file.moving_nodes()};
+  std::vector<Opacity> opacity;
+  Scene& scene = stage.scene();
+  AcceleratedScene accelerated(scene.geometry, surface_filter(scene, opacity), {.moving = moving});
+  EXPECT_TRUE(accelerated.update(surface_filter(scene, opacity)));
+  scene.materials[1].alpha_mode = AlphaMode::blend;
+  EXPECT_FALSE(accelerated.update(surface_filter(scene, opacity)));
+  scene.materials[1].alpha_mode = AlphaMode::opaque;
+  EXPECT_TRUE(accelerated.update(surface_filter(scene, opacity)));
+  scene.geometry.shape_instances.pop_back();
+  EXPECT_FALSE(accelerated.update(surface_filter(scene, opacity)));
+}
+
 TEST(Shutter, SameBitsForAnyThreadsAndTiles) {
   MovingScene scene(3);
   const int mirror = scene.phong({{"diffuseFactor", {0.5, 0.5, 0.5}}, {"reflectionFactor", {0.5, 0.5, 0.5}}});
