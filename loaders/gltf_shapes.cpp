@@ -130,7 +130,7 @@ size_t leaf_count(const Shape& operand) {
 
 /// What the operand takes as a part of a composite.
 uint64_t operand_bytes(const Shape& operand) {
-  constexpr uint64_t kLeaf = 2 * sizeof(CompositeLeaf) + 2 * sizeof(CompositeNode), kMap = 2 * sizeof(Affine3d);
+  constexpr uint64_t kLeaf = 2 * sizeof(CompositeLeaf) + 2 * sizeof(CompositeNode), kMap = 3 * sizeof(Affine3d);
   const auto* composite = std::get_if<Composite>(&operand);
   uint64_t bytes = kLeaf + kMap;
   if (composite)

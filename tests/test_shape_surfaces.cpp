@@ -214,6 +214,30 @@ TEST(Composite, OfCoincidentFacesHasNoSkinBetween) {
   EXPECT_EQ(parameters(make_composite(Operation::subtract, same), {0.1f, 3, 0.2f}, {0, -1, 0}), Parameters{});
 }
 
+TEST(Composite, OfBodiesInOnePlaceIsDecidedInDouble) {
+  // A body and itself are met at the same time: nobody has to compute at what time with more digits.
+  using Operation = CompositeNode::Operation;
+  std::mt19937 rng(11);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto vector = [&] { return Vec3f{float(unit(rng)), float(unit(rng)), float(unit(rng))}; };
+  const Affine3d place{{1.1, 0.2, 0}, {0, 0.9, 0.1}, {0.3, 0, 1}, {0.1, 0.2, 0.3}},
+      other{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.4, 0, 0}};
+  const CompositeOperand twice[] = {
+      {Sphere{0.7}, place}, {Box{{1, 1, 1}}, other}, {Sphere{0.7}, place}, {Box{{1, 1, 1}}, other}};
+  const CompositeOperand once[] = {{Sphere{0.7}, place}, {Box{{1, 1, 1}}, other}};
+  for (const Operation operation : {Operation::unite, Operation::intersect, Operation::subtract}) {
+    const Composite doubled = make_composite(operation, twice), single = make_composite(operation, once);
+    const uint64_t quad = doubt_counts().quad;
+    for (int k = 0; k < 2000; ++k) {
+      const Vec3f origin = vector() * 2.0f, direction = vector();
+      const std::vector<float> expected =
+          operation == Operation::subtract ? Parameters{} : parameters(single, origin, direction);
+      EXPECT_EQ(parameters(doubled, origin, direction), expected);
+    }
+    EXPECT_LT(doubt_counts().quad - quad, 20u);  // a few graze an edge
+  }
+}
+
 TEST(Composite, ReversesTheNormalWhereAnOperandIsSubtracted) {
   const CompositeOperand bubble[] = {{Box{{2, 2, 2}}, {}}, {Sphere{0.5}, {}}};
   const Composite cube = make_composite(CompositeNode::Operation::subtract, bubble);

@@ -1,6 +1,8 @@
 #include "accel/shapes/composite.h"
 
 #include <algorithm>
+#include <string>
+#include <unordered_map>
 
 namespace alhazen {
 namespace {
@@ -33,6 +35,37 @@ Composite as_composite(const CompositeOperand& operand) {
   return single;
 }
 
+/// The numbers that make a leaf's surface, as bytes.
+std::string surface_key(const CompositeLeaf& leaf) {
+  std::string key(1, char(leaf.body.index()));
+  const auto add = [&](double x) { key.append(reinterpret_cast<const char*>(&x), sizeof x); };
+  const auto add_vector = [&](const Vec3d& v) { add(v.x), add(v.y), add(v.z); };
+  struct Body {
+    const decltype(add)& number;
+    const decltype(add_vector)& vector;
+    void operator()(const Sphere& s) const { number(s.radius); }
+    void operator()(const Box& b) const { vector(b.size); }
+    void operator()(const Cylinder& c) const { number(c.height), number(c.radius_bottom), number(c.radius_top); }
+    void operator()(const Quadric& q) const {
+      for (const double c : q.coefficients) number(c);
+      vector(q.box.lower), vector(q.box.upper), number(q.whole);
+    }
+  };
+  std::visit(Body{add, add_vector}, leaf.body);
+  for (const Affine3d& m : leaf.chain) add_vector(m.x), add_vector(m.y), add_vector(m.z), add_vector(m.origin);
+  return key;
+}
+
+/// A body that stands in one place more than once is crossed once: no arithmetic has to find out that it is met at the
+/// same time as itself.
+void find_twins(std::vector<CompositeLeaf>& leaves) {
+  std::unordered_map<std::string, uint32_t> first;
+  for (uint32_t k = 0; k < leaves.size(); ++k) {
+    const auto [at, is_new] = first.emplace(surface_key(leaves[k]), k);
+    leaves[k].twin = is_new ? CompositeLeaf::kNoTwin : at->second;
+  }
+}
+
 /// Whether a point is inside, from whether it is inside of each leaf.
 template <class InsideLeaf>
 bool is_inside(const Composite& composite, const InsideLeaf& inside_leaf, uint32_t at = 0) {
@@ -63,6 +96,7 @@ bool append_leaf_crossings(const Composite& composite, const ObjectLine<T>& line
                            std::vector<CompositeCrossing<T>>& out) {
   for (size_t k = 0; k < composite.leaves.size(); ++k) {
     const CompositeLeaf& leaf = composite.leaves[k];
+    if (leaf.twin != CompositeLeaf::kNoTwin) continue;
     const ObjectLine<T> leaf_line = object_line(leaf_map(leaf, T()), line);
     const auto found = std::visit([&](const auto& body) { return crossings(body, leaf_line); }, leaf.body);
     if (found.doubtful) return false;
@@ -75,18 +109,24 @@ bool append_leaf_crossings(const Composite& composite, const ObjectLine<T>& line
 /// Leaves inside of which the line is, while it is followed.
 class InsideLeaves {
  public:
-  explicit InsideLeaves(size_t count) : count_((count + 63) / 64) {
+  explicit InsideLeaves(const std::vector<CompositeLeaf>& leaves) : leaves_(leaves), count_((leaves.size() + 63) / 64) {
     if (count_ > inline_.size()) more_.assign(count_, 0);
   }
+  /// A leaf that has no twin, and so all whose twin it is.
   void toggle(size_t leaf) {
     uint64_t* words = count_ > inline_.size() ? more_.data() : inline_.data();
     words[leaf / 64] ^= uint64_t(1) << (leaf % 64);
   }
-  bool operator()(size_t leaf) const { return words()[leaf / 64] >> (leaf % 64) & 1; }
+  bool operator()(size_t leaf) const {
+    const uint32_t twin = leaves_[leaf].twin;
+    if (twin != CompositeLeaf::kNoTwin) leaf = twin;
+    return words()[leaf / 64] >> (leaf % 64) & 1;
+  }
 
  private:
   [[nodiscard]] const uint64_t* words() const { return count_ > inline_.size() ? more_.data() : inline_.data(); }
 
+  const std::vector<CompositeLeaf>& leaves_;
   size_t count_;
   std::array<uint64_t, 4> inline_{};
   std::vector<uint64_t> more_;
@@ -133,7 +173,10 @@ Composite make_composite(Operation operation, std::span<const CompositeOperand> 
   for (uint32_t k = 0; k < operands.size(); ++k)
     graft(whole, 1 + k, as_composite(operands[k]), 0, operands[k].composite_from_operand,
           operation == Operation::subtract && k > 0);
-  for (CompositeLeaf& leaf : whole.leaves) leaf.body_from_composite = line_map(leaf.chain);
+  find_twins(whole.leaves);
+  for (CompositeLeaf& leaf : whole.leaves)
+    leaf.body_from_composite =
+        leaf.twin == CompositeLeaf::kNoTwin ? line_map(leaf.chain) : whole.leaves[leaf.twin].body_from_composite;
   return whole;
 }
 
@@ -143,7 +186,7 @@ bool append_crossings(const Composite& composite, const ObjectLine<T>& line, std
   if (!append_leaf_crossings(composite, line, out)) return false;
   const auto begin = out.begin() + std::ptrdiff_t(first);
   std::sort(begin, out.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
-  InsideLeaves inside_leaf(composite.leaves.size());
+  InsideLeaves inside_leaf(composite.leaves);
   bool inside = false;
   size_t kept = first;
   T reached{};  // the largest upper bound so far
@@ -166,13 +209,14 @@ std::vector<ExactCrossing> exact_crossings(const Composite& composite, const Exa
   std::vector<ExactCrossing> all, out;
   for (size_t k = 0; k < composite.leaves.size(); ++k) {
     const CompositeLeaf& leaf = composite.leaves[k];
+    if (leaf.twin != CompositeLeaf::kNoTwin) continue;
     const ExactLine leaf_line = exact_line(leaf.chain, line);
     for (ExactCrossing& c : std::visit([&](const auto& b) { return exact_crossings(b, leaf_line); }, leaf.body))
       all.push_back({std::move(c.t), int(k) * kFacesPerLeaf + c.face});
   }
   // Stable, so that of surfaces met at once the first leaf's comes first.
   std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return compare(a.t, b.t) < 0; });
-  InsideLeaves inside_leaf(composite.leaves.size());
+  InsideLeaves inside_leaf(composite.leaves);
   bool inside = false;
   for (size_t k = 0; k < all.size();) {
     const size_t first = k;

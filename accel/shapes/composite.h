@@ -21,7 +21,10 @@ struct CompositeLeaf {
   ClosedBody body;
   std::vector<Affine3d> chain;  // composite from body, map after map, the outermost first; never empty
   LineMap<double> body_from_composite;
-  bool reversed = false;  // subtracted an odd number of times: its surface faces the other way
+  bool reversed = false;    // subtracted an odd number of times: its surface faces the other way
+  uint32_t twin = kNoTwin;  // the first leaf, if that is another one, with the same body in the same place
+
+  static constexpr uint32_t kNoTwin = ~uint32_t{0};
 };
 
 /// A node of the tree. Children are consecutive: leaves where `count` is 0.
