@@ -6,13 +6,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <set>
 #include <string>
 
 #include "apps/limit_options.h"
 #include "apps/print.h"
 #include "core/error.h"
-#include "loaders/gltf_examine.h"
 #include "loaders/gltf_file.h"
 
 namespace alhazen {
@@ -91,6 +89,7 @@ Json extensions_json(const LoadedScene& loaded) {
 Json info_json(const std::string& name, const WarningSink& warn, const std::shared_ptr<LoadBudget>& budget) {
   GltfFile file(name, warn, {}, {}, budget);
   const LoadedScene loaded = file.load(0);
+  file.examine();
   Json info{{"file", name}};
   info.update(counts_json(loaded));
   info["skins"] = file.skin_count();
@@ -174,12 +173,8 @@ std::string info_text(const Json& info) {
 }
 
 int run_info(const std::string& file, const LoadLimits& limits, bool as_json) {
-  std::set<std::string> said;  // both readers find the same
-  const auto warn = [&](const std::string& text) {
-    if (said.insert(text).second) std::fprintf(stderr, "warning: %s\n", text.c_str());
-  };
+  const auto warn = [](const std::string& text) { std::fprintf(stderr, "warning: %s\n", text.c_str()); };
   const Json info = info_json(file, warn, std::make_shared<LoadBudget>(limits));
-  examine_gltf(file, warn, std::make_shared<LoadBudget>(limits));
   const std::string text = as_json ? info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : info_text(info);
   print(text);
   return int(ExitStatus::done);

@@ -30,6 +30,7 @@ LoadedScene load(const RenderArguments& arguments) {
   const auto budget = std::make_shared<LoadBudget>(arguments.limits);
   GltfFile file(arguments.scene, print_warning, arguments.choice, arguments.time, budget);
   LoadedScene loaded = file.load(arguments.time.time.value_or(0));
+  replace_environment(loaded.scene, arguments);
   bake_single_instances(loaded.scene.geometry, file.moving_meshes());
   return loaded;
 }
@@ -38,15 +39,19 @@ LoadedScene load(const RenderArguments& arguments) {
 
 void print_warning(const std::string& text) { std::fprintf(stderr, "warning: %s\n", text.c_str()); }
 
+void replace_environment(Scene& scene, const RenderArguments& arguments) {
+  if (!arguments.environment.empty()) scene.environment = environment(arguments);
+}
+
 void set_up_lights(Scene& scene, const Camera& camera, const RenderArguments& arguments) {
   if (arguments.ambient) scene.ambient = *arguments.ambient, scene.has_ambient = true;
   if (arguments.background) scene.background = *arguments.background, scene.has_background = true;
-  if (arguments.environment.empty())
-    scene.environment.reset();  // the studio of the frame before
-  else if (!scene.environment)
-    scene.environment = environment(arguments);
+  if (scene.environment && !scene.environment->seen) scene.environment.reset();  // the studio of the frame before
   const bool unlit = scene.lights.empty() && !scene.has_ambient && !scene.environment;
-  if (arguments.lights == LightChoice::studio) scene.lights.clear();
+  if (arguments.lights == LightChoice::studio) {
+    scene.lights.clear();
+    if (arguments.environment.empty()) scene.environment.reset();
+  }
   if (arguments.lights == LightChoice::studio || (arguments.lights == LightChoice::automatic && unlit))
     add_studio_lights(scene, camera);
 }

@@ -14,7 +14,10 @@ namespace alhazen {
 /// On standard error.
 void print_warning(const std::string& text);
 
-/// The lights, environment and background that the arguments ask for; studio lights where there would be none.
+/// Puts the arguments' environment in the place of the scene's own.
+void replace_environment(Scene& scene, const RenderArguments& arguments);
+
+/// The lights and background that the arguments ask for; studio lights where there would be none.
 void set_up_lights(Scene& scene, const Camera& camera, const RenderArguments& arguments);
 
 /// Builds the hierarchies while the textures are decoded, if they are not yet.

@@ -1,5 +1,6 @@
 #include "apps/render_arguments.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <concepts>
@@ -12,6 +13,7 @@ namespace alhazen {
 namespace {
 
 constexpr int kLargestSide = 65536;
+const std::vector<std::string> kViews{"standard", "pbr-neutral", "agx", "aces", "none"};  // as ViewTransform has them
 
 void parse_size(const std::string& text, RenderOptions& options) {
   int width = 0, height = 0, used = 0;
@@ -90,14 +92,33 @@ void add_display_options(CLI::App& command, RenderArguments& arguments) {
       ->type_name("STOPS")
       ->check(finite())
       ->default_str("0");
-  add_choice<ViewTransform>(command, "--view", arguments.view,
-                            {{"standard", ViewTransform::standard},
-                             {"pbr-neutral", ViewTransform::pbr_neutral},
-                             {"agx", ViewTransform::agx},
-                             {"aces", ViewTransform::aces},
-                             {"none", ViewTransform::none}},
-                            "How 8-bit files show the light: standard clamps, pbr-neutral, agx and aces compress "
-                            "highlights, none writes linear numbers");
+  const auto choose = [&](const std::string& name) {
+    arguments.ocio.view = name;
+    const auto at = std::find(kViews.begin(), kViews.end(), name);
+    if (at != kViews.end()) arguments.view = ViewTransform(at - kViews.begin());
+  };
+  command
+      .add_option_function<std::string>(
+          "--view", choose,
+          "How 8-bit files show the light: standard clamps, pbr-neutral, agx and aces compress highlights, none writes "
+          "linear numbers; with --ocio, a view of its configuration")
+      ->type_name("NAME")
+      ->default_str(kViews[0]);
+  command.add_option("--ocio", arguments.ocio.config, "OpenColorIO configuration whose views 8-bit files are shown by")
+      ->type_name("FILE");
+  command
+      .add_option("--display", arguments.ocio.display, "With --ocio: one of its displays, by default its own choice")
+      ->type_name("NAME");
+}
+
+/// The views that are asked for are there; those of a configuration are looked for in it.
+void check_view(const RenderArguments& arguments) {
+  const DisplayView& ocio = arguments.ocio;
+  if (!ocio.config.empty()) return check_display_view(ocio);
+  if (!ocio.display.empty()) throw UsageError("--display: needs --ocio, the configuration that has it");
+  if (!ocio.view.empty() && std::find(kViews.begin(), kViews.end(), ocio.view) == kViews.end())
+    throw UsageError("--view: unknown '" + ocio.view + "', expected one of " + joined(kViews) +
+                     did_you_mean(ocio.view, kViews));
 }
 
 void add_file_options(CLI::App& command, RenderArguments& arguments) {
@@ -238,7 +259,9 @@ void check_arguments(const RenderArguments& arguments) {
     throw UsageError("--frames: '" + arguments.output + "' has no place for the number, like out.####.exr");
   check_encoding(arguments.output, arguments.encoding);
   const bool ids = arguments.options.integrator == Integrator::signature;
-  if (arguments.view != ViewTransform::standard && image_format(arguments.output).linear)
+  check_view(arguments);
+  const bool viewed = arguments.view != ViewTransform::standard || !arguments.ocio.config.empty();
+  if (viewed && image_format(arguments.output).linear)
     throw UsageError("--view: '" + arguments.output + "' stays scene-linear; views are for 8-bit files");
   if (ids && arguments.shutter > 0) throw UsageError("--shutter: a signature shows one moment");
   if (ids && arguments.encoding.half) throw UsageError("--half: a signature holds 32-bit integers");
@@ -275,7 +298,6 @@ std::string picture_options(const RenderArguments& arguments) {
   text += " --spp " + std::to_string(options.samples) + " --max-depth " + std::to_string(options.max_depth) +
           " --min-weight " + number(options.min_weight);
   constexpr const char* kLights[] = {"auto", "scene", "studio"};
-  constexpr const char* kViews[] = {"standard", "pbr-neutral", "agx", "aces", "none"};
   text += std::string(" --lights ") + kLights[size_t(arguments.lights)];
   if (arguments.background) text += " --background " + number(*arguments.background);
   if (arguments.ambient) text += " --ambient " + number(*arguments.ambient);
@@ -284,7 +306,13 @@ std::string picture_options(const RenderArguments& arguments) {
             number(arguments.environment_rotation) + " --environment-strength " +
             number(arguments.environment_strength);
   text += " --exposure " + number(arguments.exposure);
-  if (arguments.view != ViewTransform::standard) text += std::string(" --view ") + kViews[size_t(arguments.view)];
+  if (!arguments.ocio.config.empty()) {
+    text += " --ocio '" + arguments.ocio.config + "'";
+    if (!arguments.ocio.display.empty()) text += " --display '" + arguments.ocio.display + "'";
+    if (!arguments.ocio.view.empty()) text += " --view '" + arguments.ocio.view + "'";
+  } else if (arguments.view != ViewTransform::standard) {
+    text += " --view " + kViews[size_t(arguments.view)];
+  }
   if (options.transparent) text += " --transparent";
   if (arguments.watertight) text += " --watertight";
   return text;

@@ -9,6 +9,7 @@
 #include "apps/progress.h"
 #include "apps/view_transform.h"
 #include "core/vec.h"
+#include "loaders/color_config.h"
 #include "loaders/gltf_file.h"
 #include "loaders/image_file.h"
 #include "renderer/render.h"
@@ -35,6 +36,7 @@ struct RenderArguments {
   float environment_strength = 1;
   float exposure = 0;  // stops
   ViewTransform view = ViewTransform::standard;
+  DisplayView ocio;  // where it names a configuration, its view takes the place of `view`
   ImageEncoding encoding;
   ProgressStyle progress = ProgressStyle::automatic;
   bool quiet = false;

@@ -76,7 +76,9 @@ void write(const RenderArguments& arguments, RenderResult& result, double render
   if (arguments.options.integrator == Integrator::signature)
     return write_image(arguments.output, result.ids, arguments.encoding, metadata);
   expose(result.color, arguments.exposure);
-  if (arguments.view == ViewTransform::standard)
+  if (!arguments.ocio.config.empty())
+    DisplayTransform(arguments.ocio).apply(result.color);
+  else if (arguments.view == ViewTransform::standard)
     mention_clipping(result.color, arguments);
   else
     apply(arguments.view, result.color);
@@ -168,6 +170,7 @@ struct Stage {
         loading(std::make_unique<ProgressReporter>(style_of(arguments), title_of(arguments.scene), budget->progress)),
         file(arguments.scene, print_warning, arguments.choice, arguments.time, budget),
         loaded(file.load(arguments.time.time.value_or(0))) {
+    replace_environment(loaded.scene, arguments);
     if (arguments.shutter > 0 && !file.is_animated() && !arguments.quiet)
       std::fprintf(stderr, "note: --shutter: no animation is played, so nothing moves\n");
     bake_single_instances(loaded.scene.geometry, file.moving_meshes());
@@ -281,6 +284,7 @@ Command add_render_command(CLI::App& program) {
       "  alhazen render scene.glb -o ids.exr --integrator signature\n"
       "  alhazen render shoe.glb -o shoe.png --variant street --camera 1\n"
       "  alhazen render scene.glb -o scene.png --watertight\n"
+      "  alhazen render scene.glb -o scene.png --ocio config.ocio --display sRGB --view Filmic\n"
       "  alhazen render fox.glb -o fox.png --animation Run --time 0.5\n"
       "  alhazen render fox.glb -o 'run.####.exr' --animation Run --frames 0:23 --fps 24\n"
       "  alhazen render fox.glb -o fox.png --animation Run --time 0.5 --shutter 0.02 --spp 64");

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <set>
 #include <string_view>
 
 #include "core/error.h"
@@ -17,55 +16,6 @@ namespace alhazen {
 namespace {
 
 using nlohmann::json;
-
-// ---- Everywhere ----
-
-/// Lists without elements, extensions that are not declared. JSON nests 64 deep at most.
-void examine_value(Examiner& e, const JsonRef& r) {
-  const json& value = r.value();
-  if (value.is_array()) {
-    e.unless(!value.empty(), r, "is empty, expected one element or more");
-    for (size_t i = 0; i < value.size() && value[i].is_structured(); ++i) examine_value(e, r[i]);
-  }
-  if (!value.is_object()) return;
-  for (const auto& item : value.items()) {
-    if (item.key() == "extras" || !item.value().is_structured()) continue;
-    if (item.key() != "extensions") {
-      examine_value(e, r[item.key()]);
-      continue;
-    }
-    for (const auto& extension : item.value().items())
-      e.unless(e.used.contains(extension.key()), r["extensions"][extension.key()], "is not declared in extensionsUsed");
-  }
-}
-
-void examine_names(Examiner& e) {
-  for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
-    std::set<std::string> seen;
-    for (const JsonRef& r : e.root().elements(key))
-      e.unless(seen.insert(r.as<std::string>()).second, r, "is listed twice");
-  }
-  for (const JsonRef& r : e.root().elements("extensionsRequired"))
-    e.unless(e.used.contains(r.as<std::string>()), r, "is required, but not listed in extensionsUsed");
-}
-
-/// An extension that stands where it has no meaning.
-void examine_places(Examiner& e) {
-  constexpr std::pair<const char*, const char*> kPlaces[] = {
-      {"textures", "KHR_texture_basisu EXT_texture_webp MSFT_texture_dds"},
-      {"nodes", "EXT_mesh_gpu_instancing KHR_node_visibility MSFT_lod"}};
-  for (const auto& [place, names] : kPlaces)
-    for (const char* other : {"accessors", "bufferViews", "images", "materials", "meshes", "nodes", "samplers",
-                              "scenes", "textures", "cameras", "skins", "animations"}) {
-      if (std::string_view(place) == other) continue;
-      for (const JsonRef& r : e.root().elements(other)) {
-        if (const auto all = r.find("extensions"))
-          for (const auto& item : all->value().items())
-            e.unless(std::string_view(names).find(item.key()) == std::string_view::npos || item.key() == "MSFT_lod",
-                     (*all)[item.key()], "has no meaning here");
-      }
-    }
-}
 
 // ---- Accessors ----
 
@@ -135,12 +85,17 @@ void examine_image(Examiner& e, const JsonRef& r) {
   if (view) {
     bytes = e.buffers.buffer_view(view->as<int>());
   } else if (uri) {
-    auto found = resolve_uri(*uri, e.source.document.folder, *e.source.budget);
+    auto found = resolve_uri(*uri, e.source.document.folder, e.files);
     if (!found) return e.say(*uri, "cannot be read");
     bytes = owned = std::move(*found);
   }
   const auto kind = image_kind(bytes);
   e.unless(kind && read_image_header(*kind, bytes), r, "its bytes are no image that is known here");
+  for (const auto& [other, extension] :
+       {std::pair{ImageKind::webp, "EXT_texture_webp"}, std::pair{ImageKind::dds, "MSFT_texture_dds"},
+        std::pair{ImageKind::ktx2, "KHR_texture_basisu"}})
+    e.unless(kind != other || e.used.contains(extension), r,
+             "its image is " + std::string(mime_of(other)) + ", which needs " + extension + " in extensionsUsed");
   const auto mime = r.find("mimeType");
   if (kind && mime && mime->value().is_string())
     e.unless(mime->as<std::string>() == mime_of(*kind), *mime, "its image is " + std::string(mime_of(*kind)));
@@ -157,14 +112,24 @@ void examine_textures(Examiner& e) {
     }
 }
 
+/// Of "data:type/subtype;name=value;base64,...": whether all between the type and base64 are such parameters.
+bool has_valid_parameters(std::string_view data_uri) {
+  std::string_view head = data_uri.substr(0, data_uri.find(','));
+  if (head.ends_with(";base64")) head.remove_suffix(7);
+  for (size_t at = head.find(';'); at != std::string_view::npos; at = head.find(';')) {
+    head.remove_prefix(at + 1);
+    if (head.substr(0, head.find(';')).find('=') == std::string_view::npos) return false;
+  }
+  return true;
+}
+
 void examine_buffers(Examiner& e) {
   for (const JsonRef& r : e.root().elements("buffers")) {
     e.unless(r["byteLength"].as<uint64_t>() > 0, r["byteLength"], "expected 1 or more");
     const auto uri = r.find("uri");
     if (!uri && r.pointer() == "/buffers/0")
       e.unless(e.source.document.bin || r.has("extensions"), r, "has no `uri`, and the file no GLB chunk for it");
-    if (uri)
-      e.unless(resolve_uri(*uri, e.source.document.folder, *e.source.budget).has_value(), *uri, "cannot be read");
+    if (uri) e.unless(resolve_uri(*uri, e.source.document.folder, e.files).has_value(), *uri, "cannot be read");
   }
   for (const JsonRef& r : e.root().elements("bufferViews"))
     e.unless(r.get("byteStride", uint64_t{0}) <= r["byteLength"].as<uint64_t>(), r,
@@ -175,6 +140,7 @@ void examine_buffers(Examiner& e) {
         const std::string text = uri->as<std::string>();
         const bool data = text.starts_with("data:");
         e.unless(!data || text.find('/') < text.find(','), *uri, "is a data URI without a media type");
+        e.unless(!data || has_valid_parameters(text), *uri, "is a data URI with a parameter that is not name=value");
         e.unless(text.find_first_of(" <>\"{}|\\^`") == std::string::npos, *uri,
                  "has characters that a URI must have percent-encoded");
         if (data && std::string_view(key) == "buffers")
@@ -269,16 +235,12 @@ bool Examiner::unless(const Check& check, const JsonRef& r) const {
   }
 }
 
-void examine_gltf(const std::filesystem::path& file, const WarningSink& warn,
-                  const std::shared_ptr<LoadBudget>& budget) {
-  GltfSource source = read_gltf_source(file, warn, budget);
-  const GltfBuffers buffers(source);
-  Examiner e{source, buffers, {}};
+void examine_gltf(GltfSource& source, const GltfBuffers& buffers) {
+  LoadBudget files(source.budget->limits());
+  Examiner e{source, buffers, files, {}};
   for (const JsonRef& r : source.root().elements("extensionsUsed")) e.used.insert(r.as<std::string>());
   examine_container(e);
-  examine_value(e, source.root());
-  examine_names(e);
-  examine_places(e);
+  examine_values(e);
   examine_accessors(e);
   examine_buffers(e);
   examine_textures(e);

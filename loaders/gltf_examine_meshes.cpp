@@ -142,6 +142,9 @@ void examine_primitive(Examiner& e, const JsonRef& r) {
                            .contains("clearcoatNormalTexture");
     e.unless(!bends || attributes.has("TANGENT") || (attributes.has("NORMAL") && uv_sets > 0), *material,
              "needs tangents, and the primitive has neither TANGENT nor NORMAL and TEXCOORD_0");
+    e.unless(
+        !bends || attributes.has("TANGENT") || looks.contains("normalTexture"), *material,
+        "needs tangents, and has neither TANGENT nor a normal texture to make them for; made for its other textures");
   }
 }
 

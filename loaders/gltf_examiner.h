@@ -14,6 +14,7 @@ namespace alhazen {
 struct Examiner {
   GltfSource& source;
   const GltfBuffers& buffers;
+  LoadBudget& files;                                   // for what is looked at and not kept
   std::set<std::string> used;                          // extensions that are declared
   std::set<std::pair<std::string, size_t>> seen = {};  // what was examined of which accessor or material
 
@@ -29,6 +30,8 @@ struct Examiner {
   bool unless(const Check& check, const JsonRef& r) const;
 };
 
+/// Lists without elements, and extensions: their names and where they stand.
+void examine_values(Examiner& e);
 void examine_meshes(Examiner& e);
 /// Skins and animations.
 void examine_motion(Examiner& e);

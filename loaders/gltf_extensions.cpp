@@ -13,7 +13,7 @@ constexpr KnownExtension kKnown[] = {
     {"ALHAZEN_lights", supported, ""},
     {"ALHAZEN_materials_phong", supported, ""},
     {"ALHAZEN_shapes", supported, ""},
-    {"EXT_lights_image_based", ignored, "no light comes from images"},
+    {"EXT_lights_image_based", supported, ""},
     {"EXT_mesh_gpu_instancing", supported, "instances of the hierarchy"},
     {"EXT_mesh_manifold", ignored, "nothing to see"},
     {"EXT_meshopt_compression", supported, "all modes and filters"},

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "loaders/gltf_choice.h"
+#include "loaders/gltf_environment.h"
+#include "loaders/gltf_examine.h"
 #include "loaders/gltf_material.h"
 #include "loaders/gltf_scene.h"
 #include "loaders/gltf_shapes.h"
@@ -71,8 +73,16 @@ struct GltfFile::Impl {
     read_scene(source, buffers, {scene_index, forest, shown, world_from_node, plan, counted}, scene);
   }
 
+  /// As meshes have to be ready for them: an anisotropy that grows from 0 wants tangents before it does.
+  [[nodiscard]] std::vector<Material> at_their_most(std::vector<Material> materials) const {
+    for (const Channel& channel : channels)
+      if (channel.target[0] == "materials" && channel.target.back() == "anisotropyStrength")
+        materials[std::stoul(channel.target[1])].anisotropy.strength = 1;
+    return materials;
+  }
+
   void read_all_meshes(Scene& scene) {
-    GltfMeshes read = read_meshes(source, buffers, scene.materials, variant, plan.deformable);
+    GltfMeshes read = read_meshes(source, buffers, at_their_most(scene.materials), variant, plan.deformable);
     deformable = std::move(read.deformable);
     scene.geometry.meshes = std::move(read.meshes);
     scene.geometry.meshes.resize(plan.mesh_count);
@@ -86,12 +96,13 @@ struct GltfFile::Impl {
   /// Of the meshes that nodes show deformed, those that are wanted.
   template <class Wanted>
   void deform(Scene& scene, const Wanted& wanted) {
+    const std::vector<Material> materials = at_their_most(scene.materials);
     std::vector<char> seen(plan.mesh_count);
     for (const MeshInstance& instance : scene.geometry.mesh_instances) seen[instance.mesh] = 1;
     for (const Deformation& how : plan.all) {
       if (!seen[how.placed_as] || !wanted(how)) continue;
       scene.geometry.meshes[how.placed_as] =
-          deformed(source, deformable[how.mesh], how, skins, world_from_node, scene.materials);
+          deformed(source, deformable[how.mesh], how, skins, world_from_node, materials);
     }
   }
 };
@@ -125,6 +136,7 @@ LoadedScene GltfFile::load(double seconds) {
   check_deformations(impl.source, impl.deformable, impl.skins, impl.plan);
   for (const tinygltf::Node& node : impl.source.model.nodes) scene.node_names.push_back(node.name);
   impl.place(scene, false);
+  scene.environment = read_environment(impl.source, impl.buffers, impl.scene_index);
   impl.deform(scene, [](const Deformation&) { return true; });
   return loaded;
 }
@@ -146,6 +158,8 @@ void GltfFile::move(Scene& scene, double seconds) {
   scene.background = now.background, scene.has_background = now.has_background;
   impl.deform(scene, [&](const Deformation& how) { return impl.moving[how.placed_as] != 0; });
 }
+
+void GltfFile::examine() { examine_gltf(impl_->source, impl_->buffers); }
 
 std::span<const char> GltfFile::moving_meshes() const { return impl_->moving; }
 

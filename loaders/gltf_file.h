@@ -39,6 +39,10 @@ class GltfFile {
   /// shut.
   void move(Scene& scene, double seconds);
 
+  /// Warns of what breaks the specification, though a picture can do without it: see `examine_gltf`. Of a file whose
+  /// animations are not played.
+  void examine();
+
   /// By mesh of the loaded scene, whether the animations change it or a node that shows it.
   [[nodiscard]] std::span<const char> moving_meshes() const;
 

@@ -13,6 +13,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr uint64_t kMaxOffset = uint64_t{1} << 53;
 const char* const kLights = "/extensions/KHR_lights_punctual/lights";
+const char* const kImageLights = "/extensions/EXT_lights_image_based/lights";
 
 void check_version(const JsonRef& r) {
   text()(r);
@@ -268,16 +269,33 @@ Check animation() {
   return object({{"name", text()}, {"channels", list_of(channel), required}, {"samplers", list_of(sampler), required}});
 }
 
+/// Six images a level, nine colours.
+Check image_based_light() {
+  const auto array_of = [](size_t count, const char* what, const Check& element) {
+    return both(list_of(element), [=](const JsonRef& r) {
+      if (r.value().size() != count) r.expected("an array of " + std::to_string(count) + " " + what);
+    });
+  };
+  return object({{"name", text()},
+                 {"intensity", number(0)},
+                 {"rotation", numbers(4)},
+                 {"irradianceCoefficients", array_of(9, "colours", numbers(3)), required},
+                 {"specularImageSize", integer(1), required},
+                 {"specularImages", list_of(array_of(6, "images", index_into("/images")), 1), required}});
+}
+
 Check scene() {
   const Check lights = closed_object({{"ambient", color()}, {"background", color()}});
+  const Check image_light = object({{"light", index_into(kImageLights), required}});
   return object({{"name", text()},
                  {"nodes", list_of(index_into("/nodes"))},
-                 {"extensions", object({{"ALHAZEN_lights", lights}})}});
+                 {"extensions", object({{"ALHAZEN_lights", lights}, {"EXT_lights_image_based", image_light}})}});
 }
 
 Check gltf() {
   const Check variant = object({{"name", text(), required}});
   const Check extensions = object({{"KHR_lights_punctual", object({{"lights", list_of(light())}})},
+                                   {"EXT_lights_image_based", object({{"lights", list_of(image_based_light())}})},
                                    {"KHR_materials_variants", object({{"variants", list_of(variant), required}})},
                                    {"ALHAZEN_shapes", closed_object({{"shapes", list_of(shape_description())}})}});
   return object({{"asset", object({{"version", check_version, required}}), required},

@@ -12,7 +12,7 @@ namespace {
 using Operation = CompositeNode::Operation;
 
 constexpr size_t kMostLeaves = 65536;  // of one composite: nesting can double them at every level
-constexpr int kDeepestComposite = 200;
+constexpr int kDeepestComposite = 128;
 constexpr uint64_t kShapeBytes = 2 * sizeof(Shape);
 
 /// Reads shapes in any order, so that composites find their operands.

@@ -15,7 +15,7 @@
 
 namespace alhazen {
 
-/// Passes warnings on, each text once.
+/// Passes warnings on, each text once, a thousand at most.
 class Warnings {
  public:
   Warnings(std::string file, WarningSink sink) : file_(std::move(file)), sink_(std::move(sink)) {}

@@ -47,23 +47,6 @@ Texture read_texture(const GltfSource& source, const JsonRef& r) {
   return t;
 }
 
-/// No bytes, with a warning, for one that cannot be read.
-Bytes read_image(GltfSource& source, const GltfBuffers& buffers, const JsonRef& r) {
-  if (const auto view = r.find("bufferView")) {
-    const std::span<const uint8_t> bytes = buffers.buffer_view(view->as<int>());
-    source.budget->take(r, bytes.size());
-    return {bytes.begin(), bytes.end()};
-  }
-  const auto uri = r.find("uri");
-  if (!uri) {
-    source.warn(r.pointer(), "has neither `uri` nor `bufferView`, taken as white");
-    return {};
-  }
-  auto bytes = resolve_uri(*uri, source.document.folder, *source.budget);
-  if (!bytes) source.warn(uri->pointer(), "cannot read `" + uri->as<std::string>().substr(0, 80) + "`, taken as white");
-  return bytes ? std::move(*bytes) : Bytes{};
-}
-
 /// Once for all KTX 2 textures.
 void warn_of_missing_image(GltfSource& source, const JsonRef& texture) {
   if (texture.extension("KHR_texture_basisu"))
@@ -88,6 +71,22 @@ void mark_mipmaps(const GltfMaterials& materials, GltfTextures& all) {
 }
 
 }  // namespace
+
+Bytes read_image(GltfSource& source, const GltfBuffers& buffers, const JsonRef& r) {
+  if (const auto view = r.find("bufferView")) {
+    const std::span<const uint8_t> bytes = buffers.buffer_view(view->as<int>());
+    source.budget->take(r, bytes.size());
+    return {bytes.begin(), bytes.end()};
+  }
+  const auto uri = r.find("uri");
+  if (!uri) {
+    source.warn(r.pointer(), "has neither `uri` nor `bufferView`, taken as white");
+    return {};
+  }
+  auto bytes = resolve_uri(*uri, source.document.folder, *source.budget);
+  if (!bytes) source.warn(uri->pointer(), "cannot read `" + uri->as<std::string>().substr(0, 80) + "`, taken as white");
+  return bytes ? std::move(*bytes) : Bytes{};
+}
 
 GltfTextures read_textures(GltfSource& source, const GltfBuffers& buffers, const GltfMaterials& materials) {
   GltfTextures all;

@@ -20,4 +20,7 @@ struct GltfTextures {
 [[nodiscard]] GltfTextures read_textures(GltfSource& source, const GltfBuffers& buffers,
                                          const GltfMaterials& materials);
 
+/// An image's own bytes; none, with a warning, where they cannot be read.
+[[nodiscard]] Bytes read_image(GltfSource& source, const GltfBuffers& buffers, const JsonRef& image);
+
 }  // namespace alhazen

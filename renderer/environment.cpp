@@ -9,6 +9,7 @@
 #include "core/fork_join.h"
 #include "core/sampling.h"
 #include "materials/microfacet.h"
+#include "renderer/equirectangular.h"
 
 namespace alhazen {
 namespace {
@@ -21,11 +22,6 @@ Rgb pixel(const ColorImage& image, int x, int y) {
   return {p[0], p[1], p[2]};
 }
 
-/// Where a unit direction lies in an equirectangular image, from 0 to 1 each way.
-Vec2f place_of(const Vec3f& d) {
-  return {0.5f + std::atan2(d.x, -d.z) / (2 * kPi), std::acos(std::clamp(d.y, -1.0f, 1.0f)) / kPi};
-}
-
 Rgb bilinear(const ColorImage& image, const Vec2f& place) {
   const auto [u, v] = place;
   const float x = u * float(image.width) - 0.5f, y = v * float(image.height) - 0.5f;
@@ -35,11 +31,6 @@ Rgb bilinear(const ColorImage& image, const Vec2f& place) {
   const float s = x - float(x0), t = y - float(y0);
   return lerp(lerp(pixel(image, column(x0), row(y0)), pixel(image, column(x0 + 1), row(y0)), s),
               lerp(pixel(image, column(x0), row(y0 + 1)), pixel(image, column(x0 + 1), row(y0 + 1)), s), t);
-}
-
-Vec3f direction_at(int x, int y, int width, int height) {
-  const float phi = (2 * (float(x) + 0.5f) / float(width) - 1) * kPi, theta = (float(y) + 0.5f) / float(height) * kPi;
-  return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
 }
 
 ColorImage blank(int width, int height) {
@@ -116,7 +107,7 @@ Rgb gathered(const std::vector<ColorImage>& levels, const std::vector<LobeSample
   for (const LobeSample& sample : lobe) {
     const Vec3f& d = sample.direction;
     sum +=
-        bilinear(levels[size_t(sample.level)], place_of(frame.t * d.x + frame.b * d.y + frame.n * d.z)) * sample.weight;
+        bilinear(levels[size_t(sample.level)], equirectangular_place(frame.t * d.x + frame.b * d.y + frame.n * d.z)) * sample.weight;
   }
   return sum;
 }
@@ -140,7 +131,7 @@ std::array<Rgb, 9> projected(const ColorImage& image) {
     const double angle = double(std::sin(theta) * 2 * kPi * kPi / float(image.width * image.height));
     for (int x = 0; x < image.width; ++x) {
       const Rgb c = pixel(image, x, y);
-      const auto basis = harmonics_at(direction_at(x, y, image.width, image.height));
+      const auto basis = harmonics_at(equirectangular_direction(x, y, image.width, image.height));
       for (size_t k = 0; k < 9; ++k)
         sum[k] += Vec3d(double(c.r), double(c.g), double(c.b)) * (angle * double(basis[k]));
     }
@@ -187,14 +178,14 @@ Environment make_environment(ColorImage image) {
     const int width = std::max(32, 256 >> k);
     ColorImage level = blank(width, width / 2);
     const auto lobe = lobe_samples(float(k) / (kLevels - 1), int(source.size()), source[0].width * source[0].height);
-    fill(level, [&](int x, int y) { return gathered(source, lobe, direction_at(x, y, width, width / 2)); });
+    fill(level, [&](int x, int y) { return gathered(source, lobe, equirectangular_direction(x, y, width, width / 2)); });
     environment.levels.push_back(std::move(level));
   }
   return environment;
 }
 
 Rgb environment_radiance(const Environment& environment, const Vec3f& direction_world, float roughness) noexcept {
-  const Vec2f place = place_of(transform_vector(environment.environment_from_world, direction_world));
+  const Vec2f place = equirectangular_place(transform_vector(environment.environment_from_world, direction_world));
   const float x = std::clamp(roughness, 0.0f, 1.0f) * float(environment.levels.size() - 1);
   const size_t k = std::min(size_t(x), environment.levels.size() - 1);
   const Rgb sharp = bilinear(environment.levels[k], place);
@@ -216,7 +207,7 @@ Rgb environment_diffuse(const Environment& environment, const Vec3f& n_world) no
 Environment studio_environment(const Vec3d& forward_world) {
   constexpr int kWidth = 256;
   ColorImage image = blank(kWidth, kWidth / 2);
-  fill(image, [](int x, int y) { return studio_radiance(direction_at(x, y, kWidth, kWidth / 2)); });
+  fill(image, [](int x, int y) { return studio_radiance(equirectangular_direction(x, y, kWidth, kWidth / 2)); });
   Environment environment = make_environment(std::move(image));
   environment.seen = false;
   // Turned about y until the studio's +z points at the camera.

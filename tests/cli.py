@@ -333,6 +333,26 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(self.render("a.exr", "--exposure", "6").stderr, "")
         self.assertEqual(self.render("a.png").stderr, "")
 
+    def test_views_are_those_of_a_colour_configuration_where_one_is_named(self):
+        with open(self.file("c.ocio"), "w", encoding="utf-8") as file:
+            file.write("ocio_profile_version: 1\nroles: {default: lin_rec709, scene_linear: lin_rec709}\n"
+                       "displays:\n  Screen:\n    - !<View> {name: Black, colorspace: black}\n    - !<View> {name: Plain, colorspace: lin_rec709}\n"
+                       "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n  - !<ColorSpace>\n    name: black\n"
+                       "    from_reference: !<MatrixTransform> {matrix: [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1]}\n")
+        ocio = ("--ocio", self.file("c.ocio"))
+        self.assertEqual(self.render("a.ppm", *ocio, "--display", "Screen", "--view", "Black").returncode, 0)
+        with open(self.file("a.ppm"), "rb") as file:
+            self.assertEqual(set(file.read().split(b"\n255\n", 1)[1]), {0})
+        for options, message in (((*ocio, "--view", "agx"), "--view: unknown 'agx', the configuration has Black, Plain"),
+                                 ((*ocio, "--display", "Wall"), "--display: unknown 'Wall', the configuration has Screen"),
+                                 (("--display", "Screen"), "--display: needs --ocio"),
+                                 (("--view", "agxx"), "expected one of standard, pbr-neutral, agx, aces, none; did you mean 'agx'?")):
+            result = self.render("a.png", *options)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(message, result.stderr)
+        self.assertEqual(self.render("a.exr", *ocio).returncode, 2)
+        self.assertEqual(self.render("a.png", "--ocio", self.file("absent.ocio")).returncode, 3)
+
     def test_a_source_date_makes_the_same_bytes(self):
         for extension in ("exr", "png", "tif", "jpg", "webp", "hdr"):
             files = []

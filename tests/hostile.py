@@ -272,6 +272,10 @@ def documents():
         yield f"composites of {arity} operands, {depth} deep", gltf(
             extensionsUsed=["ALHAZEN_shapes"], extensions={"ALHAZEN_shapes": {"shapes": shapes}},
             nodes=[{"extensions": {"ALHAZEN_shapes": {"shape": len(shapes) - 1}}}])
+    bodies = [ball, {"composite": {"operation": "union", "operands": [{"shape": 0}] * 40}}]
+    yield "thousands of composites in one place", gltf(
+        extensionsUsed=["ALHAZEN_shapes"], extensions={"ALHAZEN_shapes": {"shapes": bodies}},
+        nodes=[{"extensions": {"ALHAZEN_shapes": {"shape": 1}}}] * 4_000)
     shapes = [ball] + [{"composite": {"operation": "union", "operands": [{"shape": 0}] * 40}}] * 15_00
     yield "composites at thousands of nodes", gltf(
         extensionsUsed=["ALHAZEN_shapes"], extensions={"ALHAZEN_shapes": {"shapes": shapes[:500]}},

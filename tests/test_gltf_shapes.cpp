@@ -187,7 +187,7 @@ TEST(GltfShapes, CompositesHaveNoCyclesAndDoNotExplode) {
   for (int k = 0; k < 1000; ++k)
     chain.push_back({{"composite", {{"operation", "union"}, {"operands", {{{"shape", k + 1}}}}}}});
   chain.push_back(body("sphere"));
-  EXPECT_TRUE(error_of(with_shapes(chain)).ends_with("composites are nested more than 200 deep"));
+  EXPECT_TRUE(error_of(with_shapes(chain)).ends_with("composites are nested more than 128 deep"));
 }
 
 TEST(GltfShapes, ArePlacedByInvertibleMatricesOnly) {

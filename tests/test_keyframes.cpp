@@ -290,6 +290,19 @@ TEST(GltfAnimationPointer, ReachesMaterialsLightsAndCameras) {
   EXPECT_FLOAT_EQ(shifted.materials[0].normal_texture.y0, 0.25f);
 }
 
+TEST(GltfAnimationPointer, AnAnisotropyThatGrowsFromNothingFindsTangents) {
+  AnimatedFile f = pointing("/materials/0/extensions/KHR_materials_anisotropy/anisotropyStrength", {0, 1}, "SCALAR", 2);
+  json& attributes = f.b.root["meshes"][0]["primitives"][0]["attributes"];
+  f.b.root["meshes"][0]["primitives"][0]["material"] = 0;
+  f.b.root["materials"] = {{{"extensions", {{"KHR_materials_anisotropy", json::object()}}}}};
+  attributes["NORMAL"] = f.b.vec3({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  attributes["TEXCOORD_0"] = f.b.vec2({0, 0, 1, 0, 0, 1});
+  EXPECT_TRUE(load_at(f.b, play("none")).part().tangents.empty());
+  const Loaded played = load_at(f.b, play("", 0));
+  EXPECT_EQ(played.scene().materials[0].anisotropy.strength, 0);
+  EXPECT_EQ(played.part().tangents.size(), 3u);
+}
+
 TEST(GltfAnimationPointer, HidesAndShowsNodes) {
   AnimatedFile f = pointing("/nodes/0/extensions/KHR_node_visibility/visible", {0, 0}, "SCALAR", 2);
   f.sampler()["output"] = f.b.accessor(std::vector<uint8_t>{1, 0}, "SCALAR", 5121, 2);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "gltf_builder.h"
+#include "loaders/gltf_file.h"
 #include "loaders/image_decode.h"
 #include "loaders/image_header.h"
 
@@ -52,9 +53,47 @@ TEST(LoadLimits, MemoryIsCountedAndTheMessageSaysWhatRaisesIt) {
   b.mesh({{"attributes", {{"POSITION", position}}}});
   EXPECT_EQ(refusal(b.document(), {}), "");
   EXPECT_EQ(refusal(b.document(), {.memory = 4 << 20}),
-            "scene.gltf: /meshes/0/primitives/0: needs 9.2 MiB of memory, 5.1 KiB of 4.0 MiB are taken; --max-memory "
+            "scene.gltf: /meshes/0/primitives/0: needs 9.2 MiB of memory, 5.4 KiB of 4.0 MiB are taken; --max-memory "
             "raises the limit");
   EXPECT_EQ(refusal(b.document(), {.memory = 1 << 30}), "");
+}
+
+TEST(LoadLimits, AFileIsCountedOnceHoweverOftenItIsPosed) {
+  GltfBuilder b;
+  b.mesh({{"attributes", {{"POSITION", b.vec3(kTriangle)}}},
+          {"targets", {{{"POSITION", b.vec3({0, 0, 1, 0, 0, 1, 0, 0, 1})}}}}});
+  b.root["meshes"][0]["weights"] = {0};
+  const int instances = b.vec3({0, 0, 0, 1, 0, 0});
+  b.add("nodes",
+        {{"mesh", 0}, {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", instances}}}}}}}});
+  const int times = b.accessor(std::vector<float>{0, 1}, "SCALAR", 5126, 2);
+  b.add("animations",
+        {{"channels",
+          {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}},
+           {{"sampler", 1}, {"target", {{"node", 1}, {"path", "translation"}}}}}},
+         {"samplers",
+          {{{"input", times}, {"output", times}}, {{"input", times}, {"output", b.vec3({0, 0, 0, 1, 1, 1})}}}}});
+  const TemporaryFolder folder;
+  const auto budget = std::make_shared<LoadBudget>();
+  GltfFile file(folder.write("scene.gltf", b.document().dump()), {}, {}, {"", 0.0}, budget);
+  LoadedScene loaded = file.load(0);
+  const uint64_t taken = budget->taken();
+  for (int frame = 0; frame < 200; ++frame) file.move(loaded.scene, frame / 200.0);
+  EXPECT_EQ(budget->taken(), taken);
+  EXPECT_EQ(loaded.scene.geometry.mesh_instances.size(), 3u);
+}
+
+TEST(LoadLimits, WarningsEndAfterAThousand) {
+  json document = {{"asset", {{"version", "2.0"}}}};
+  for (int i = 0; i < 3000; ++i) document["nodes"].push_back({{"skin", 0}});
+  document["skins"] = {{{"joints", {0}}}};
+  const TemporaryFolder folder;
+  std::vector<std::string> warnings;
+  GltfFile file(folder.write("scene.gltf", document.dump()),
+                [&](const std::string& text) { warnings.push_back(text); });
+  file.examine();
+  ASSERT_EQ(warnings.size(), 1001u);
+  EXPECT_TRUE(warnings.back().ends_with("there are more warnings, which are left out"));
 }
 
 TEST(LoadLimits, ALargerFileMayUnfoldToMore) {
