@@ -59,6 +59,36 @@ CLI::Validator duration() {
           ""};
 }
 
+std::string layer_names() {
+  std::string names;
+  for (size_t i = 0; i < kLayers; ++i) names += (i > 0 ? ", " : "") + std::string(layer_name(Layer(i)));
+  return names;
+}
+
+std::vector<Layer> parse_layers(const std::string& text) {
+  std::vector<std::string> known;
+  for (size_t i = 0; i < kLayers; ++i) known.emplace_back(layer_name(Layer(i)));
+  std::vector<Layer> layers;
+  for (const std::string& word : CLI::detail::split(text, ',')) {
+    const auto at = std::ranges::find(known, word);
+    if (at == known.end())
+      throw CLI::ValidationError(
+          "--aov", "unknown '" + word + "', expected some of " + joined(known) + did_you_mean(word, known));
+    const auto layer = Layer(at - known.begin());
+    if (std::ranges::find(layers, layer) == layers.end()) layers.push_back(layer);
+  }
+  return layers;
+}
+
+void add_layer_options(CLI::App& command, RenderArguments& arguments) {
+  command
+      .add_option_function<std::string>(
+          "--aov", [&](const std::string& text) { arguments.options.layers = parse_layers(text); },
+          "Layers, in the channels of an .exr file, or one alone as an 8-bit picture: some of " + layer_names())
+      ->type_name("LIST");
+  command.add_flag("--multipart", arguments.multipart, "--aov: a part of the .exr file for each layer");
+}
+
 void add_frame_options(CLI::App& command, RenderArguments& arguments) {
   command
       .add_option_function<std::string>(
@@ -127,6 +157,7 @@ void add_file_options(CLI::App& command, RenderArguments& arguments) {
       ->required();
   command.add_flag("--transparent", arguments.options.transparent,
                    "Alpha instead of the background where the camera sees it (.exr .png .tif .webp .tga)");
+  add_layer_options(command, arguments);
   command.add_flag("--half", arguments.encoding.half, ".exr: 16-bit floats instead of 32");
   command
       .add_option("--compression", arguments.encoding.compression,
@@ -166,6 +197,18 @@ std::string number(T v) {
 }
 
 std::string number(const Rgb& c) { return number(c.r) + "," + number(c.g) + "," + number(c.b); }
+
+void check_layers(const RenderArguments& arguments) {
+  const size_t layers = arguments.options.layers.size();
+  const bool exr = image_format(arguments.output).name == "openexr";
+  if (arguments.multipart && (layers == 0 || !exr)) throw UsageError("--multipart: needs --aov and an .exr file");
+  if (layers == 0) return;
+  if (arguments.options.integrator == Integrator::signature) throw UsageError("--aov: a signature has no layers");
+  const bool several = layers > 1 || arguments.options.layers[0] == Layer::lights;
+  if (!exr && (several || image_format(arguments.output).linear))
+    throw UsageError("--aov: '" + arguments.output +
+                     "' cannot hold layers; .exr can, and .png and the like show one alone");
+}
 
 }  // namespace
 
@@ -264,6 +307,7 @@ void check_arguments(const RenderArguments& arguments) {
   if (viewed && image_format(arguments.output).linear)
     throw UsageError("--view: '" + arguments.output + "' stays scene-linear; views are for 8-bit files");
   if (ids && arguments.shutter > 0) throw UsageError("--shutter: a signature shows one moment");
+  check_layers(arguments);
   if (ids && arguments.encoding.half) throw UsageError("--half: a signature holds 32-bit integers");
   if (!arguments.options.transparent) return;
   if (ids) throw UsageError("--transparent: a signature has no alpha");

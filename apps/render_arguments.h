@@ -38,6 +38,7 @@ struct RenderArguments {
   ViewTransform view = ViewTransform::standard;
   DisplayView ocio;  // where it names a configuration, its view takes the place of `view`
   ImageEncoding encoding;
+  bool multipart = false;  // a part of the file for each layer
   ProgressStyle progress = ProgressStyle::automatic;
   bool quiet = false;
 };

@@ -19,7 +19,9 @@
 #include "apps/prepare_scene.h"
 #include "apps/render_arguments.h"
 #include "core/error.h"
+#include "inspect/layer_picture.h"
 #include "loaders/gltf_file.h"
+#include "loaders/layer_file.h"
 #include "loaders/record_motion.h"
 #include "renderer/framing.h"
 
@@ -75,6 +77,10 @@ void write(const RenderArguments& arguments, RenderResult& result, double render
   const Metadata metadata = picture_metadata(arguments, g_control, result.complete, render_seconds);
   if (arguments.options.integrator == Integrator::signature)
     return write_image(arguments.output, result.ids, arguments.encoding, metadata);
+  const bool as_picture = !result.layers.empty() && !image_format(arguments.output).linear;
+  if (as_picture)
+    return write_image(arguments.output, layer_picture(result.layers[0], result.color.width, result.color.height),
+                       arguments.encoding, metadata);
   expose(result.color, arguments.exposure);
   if (!arguments.ocio.config.empty())
     DisplayTransform(arguments.ocio).apply(result.color);
@@ -82,6 +88,9 @@ void write(const RenderArguments& arguments, RenderResult& result, double render
     mention_clipping(result.color, arguments);
   else
     apply(arguments.view, result.color);
+  if (!result.layers.empty())
+    return write_layers(arguments.output, result.color, result.layers, arguments.multipart, arguments.encoding,
+                        metadata);
   write_image(arguments.output, result.color, arguments.encoding, metadata);
 }
 
@@ -282,6 +291,8 @@ Command add_render_command(CLI::App& program) {
       "  alhazen render scene.gltf -o scene.png\n"
       "  alhazen render scene.glb -o beauty.exr --size 1920x1080 --spp 16 --transparent --half\n"
       "  alhazen render scene.glb -o ids.exr --integrator signature\n"
+      "  alhazen render scene.glb -o layers.exr --aov albedo,normal,depth,lights,reflected,refracted\n"
+      "  alhazen render scene.glb -o cost.png --aov cost\n"
       "  alhazen render shoe.glb -o shoe.png --variant street --camera 1\n"
       "  alhazen render scene.glb -o scene.png --watertight\n"
       "  alhazen render scene.glb -o scene.png --ocio config.ocio --display sRGB --view Filmic\n"

@@ -13,6 +13,7 @@
 #include "core/sampling.h"
 #include "renderer/camera_cell.h"
 #include "renderer/camera_ray.h"
+#include "renderer/layer_recorder.h"
 #include "renderer/moving.h"
 #include "renderer/surface.h"
 #include "renderer/trace_observer.h"
@@ -81,7 +82,7 @@ struct CellWorker {
     arena.log = control.log ? &log : nullptr;
     bool finished = true;
     if (options.integrator == Integrator::whitted)
-      finished = whitted(cell, arena);
+      finished = options.layers.empty() ? whitted(cell, arena) : whitted_with_layers(cell, arena);
     else
       signature(cell, arena);
     control.doubts += doubt_counts().quad - doubts_before;
@@ -106,6 +107,15 @@ struct CellWorker {
       out[0] = ids.node, out[1] = ids.primitive, out[2] = ids.material;
     }
     control.camera_rays += arena.pending.size();
+  }
+
+  [[nodiscard]] bool whitted_with_layers(const Cell& cell, WaveArena& arena) const {
+    LayerRecorder recorder(scene, camera, options.layers, result.layers, options.width);
+    arena.observer = &recorder;
+    const bool finished = whitted(cell, arena);
+    arena.observer = nullptr;
+    if (finished) recorder.finish(cell, options.samples);
+    return finished;
   }
 
   [[nodiscard]] bool whitted(const Cell& cell, WaveArena& arena) const {
@@ -179,6 +189,7 @@ RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, con
         options.width, options.height, {"node", "primitive", "material"}, std::vector<uint32_t>(pixels * 3, kNone)};
   } else {
     result.color = empty_picture(options.width, options.height);
+    result.layers = empty_layers(scene, options.layers, options.width, options.height);
   }
   const CellWorker worker{scene, accelerated, camera, options, control, result, is_moving(scene, camera)};
   const int cells_x = (options.width + kCellSize - 1) / kCellSize,
@@ -214,7 +225,9 @@ CellPicture render_cell(const Scene& scene, const AcceleratedScene& accelerated,
   result.color = empty_picture(cell.x1 - cell.x0, cell.y1 - cell.y0);
   WaveArena arena;
   arena.observer = &observer;
-  const CellWorker worker{scene,   accelerated, camera, options, control, result, is_moving(scene, camera),
+  RenderOptions alone = options;  // the observer is told, not the layers
+  alone.layers.clear();
+  const CellWorker worker{scene,   accelerated, camera, alone, control, result, is_moving(scene, camera),
                           cell.x0, cell.y0};
   if (!worker.trace(cell, arena)) return {};
   return {cell.x0, cell.y0, std::move(result.color)};

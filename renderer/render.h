@@ -7,6 +7,7 @@
 
 #include "accel/accelerated_scene.h"
 #include "core/image.h"
+#include "renderer/layer.h"
 #include "renderer/phase_clock.h"
 #include "renderer/scene.h"
 #include "renderer/wave_log.h"
@@ -20,10 +21,11 @@ struct RenderOptions {
   Integrator integrator = Integrator::whitted;
   int max_depth = 5;
   float min_weight = 0.001f;
-  int samples = 1;           // for each pixel
-  bool transparent = false;  // where the view meets the background, alpha says so and its colour is left out
-  int threads = 0;           // 0: all
-  int tile_size = 64;        // pixels; rounded up to whole cells; never changes the picture
+  int samples = 1;              // for each pixel
+  bool transparent = false;     // where the view meets the background, alpha says so and its colour is left out
+  int threads = 0;              // 0: all
+  int tile_size = 64;           // pixels; rounded up to whole cells; never changes the picture
+  std::vector<Layer> layers{};  // of whitted, besides the picture; each once
 };
 
 /// How far a render is, and the request to stop it: written and read by different threads.
@@ -41,8 +43,9 @@ struct RenderControl {
 
 /// Stopped early, every pixel is what the complete picture has there, or empty: 0 with alpha 0, or no node.
 struct RenderResult {
-  ColorImage color;  // whitted: R, G, B, A
-  IdImage ids;       // signature: node, primitive, material
+  ColorImage color;                // whitted: R, G, B, A
+  IdImage ids;                     // signature: node, primitive, material
+  std::vector<LayerImage> layers;  // of the options' layers, in their order
   bool complete = true;
 };
 

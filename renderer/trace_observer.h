@@ -37,6 +37,7 @@ struct LightQuery {
   const Rayf& shadow;     // towards the light
   float distance;         // metres; infinite for directional lights
   Rgb arriving;           // colour x intensity x attenuation at the surface
+  Rgb weight;             // of the surface in the sample
   Rgb diffuse, specular;  // what the surface makes of it towards the ray's origin; layers count as specular
 };
 
@@ -82,6 +83,7 @@ class FollowedRays {
     current_.assign(pending_.begin() + ptrdiff_t(first), pending_.end());
     pending_.resize(first);
   }
+  [[nodiscard]] size_t wave_size() const { return current_.size(); }
   T& pending(size_t i) { return pending_[i]; }
   const T& operator[](size_t i) const { return current_[i]; }
 

@@ -397,7 +397,7 @@ class Whitted {
     arena_.shadow_pixel[i] = s.path.pixel, arena_.shadow_light[i] = light_to_eye;
     tell([&](TraceObserver& observer) {
       const Rgb all = reflected(bsdf, to_light), specular = reflected(without_diffuse(bsdf), to_light);
-      observer.ask({index, ray, distance, arriving, all - specular, specular});
+      observer.ask({index, ray, distance, arriving, s.weight, all - specular, specular});
     });
     if (i + 1 == kShadowLimit) trace_shadows(Coherence::incoherent);
   }

@@ -2,58 +2,20 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <filesystem>
-#include <memory>
 #include <random>
 
 #include "inspect/trace_pixel.h"
-#include "loaders/gltf.h"
-#include "loaders/image_decode.h"
-#include "renderer/render.h"
+#include "tests/loaded_subject.h"
 
 namespace alhazen {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct Subject {
-  Scene scene;
-  Camera camera;
-  std::vector<Opacity> opacity;
-  std::unique_ptr<AcceleratedScene> accelerated;
-
-  Subject(const fs::path& file, double aspect) {
-    LoadedScene loaded = load_gltf(file, [](const std::string&) {});
-    scene = std::move(loaded.scene);
-    scene.images = decode_images(
-        std::move(loaded.encoded), [](const std::string&) {}, *loaded.budget);
-    bake_single_instances(scene.geometry);
-    camera = scene.cameras.empty() ? framing_camera(scene.geometry, aspect) : scene.cameras[0];
-    if (scene.lights.empty() && !scene.has_ambient) add_studio_lights(scene, camera);
-    accelerated = std::make_unique<AcceleratedScene>(scene.geometry, surface_filter(scene, opacity));
-  }
-  Subject(const Subject&) = delete;
-
-  [[nodiscard]] ColorImage picture(const RenderOptions& options) const {
-    RenderControl control;
-    return render(scene, *accelerated, camera, options, control).color;
-  }
-};
-
-std::vector<fs::path> scenes() {
-  std::vector<fs::path> files{ALHAZEN_SHOWCASE};
-  for (const auto& entry : fs::directory_iterator(ALHAZEN_TEST_IMAGES))
-    if (entry.path().extension() == ".gltf") files.push_back(entry.path());
-  std::ranges::sort(files);
-  return files;
-}
 
 bool same_bits(const Rgb& a, const float* b) { return std::memcmp(&a, b, sizeof a) == 0; }
 
 /// f(tree, the picture's pixel) for some pixels of every scene.
 template <class F>
 void for_trees(const RenderOptions& options, int pixels, const F& f) {
-  for (const fs::path& file : scenes()) {
+  for (const std::filesystem::path& file : small_scenes()) {
     SCOPED_TRACE(file.filename().string());
     const Subject subject(file, double(options.width) / options.height);
     const ColorImage picture = subject.picture(options);

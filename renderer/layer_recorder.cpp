@@ -1,0 +1,262 @@
+#include "renderer/layer_recorder.h"
+
+#include "materials/metallic_roughness.h"
+#include "materials/phong.h"
+
+namespace alhazen {
+namespace {
+
+constexpr std::array kNames{"albedo",    "normal",    "geometric_normal", "depth",   "position",   "uv",     "node",
+                            "primitive", "material",  "emission",         "ambient", "background", "direct", "lights",
+                            "reflected", "refracted", "shadow",           "samples", "rays",       "cost"};
+static_assert(kNames.size() == kLayers);
+
+bool holds_ids(Layer layer) { return layer == Layer::node || layer == Layer::primitive || layer == Layer::material; }
+
+std::vector<std::string> channels_of(Layer layer) {
+  switch (layer) {
+    case Layer::normal:
+    case Layer::geometric_normal:
+    case Layer::position:
+      return {"X", "Y", "Z"};
+    case Layer::uv:
+      return {"U", "V"};
+    case Layer::depth:
+      return {"Z"};
+    case Layer::node:
+    case Layer::primitive:
+    case Layer::material:
+    case Layer::shadow:
+    case Layer::samples:
+    case Layer::rays:
+    case Layer::cost:
+      return {"Y"};
+    default:
+      return {"R", "G", "B"};
+  }
+}
+
+LayerImage empty_layer(Layer layer, const std::string& name, size_t pixels) {
+  LayerImage image{name, channels_of(layer), {}, {}};
+  if (holds_ids(layer))
+    image.ids.assign(pixels, kNone);
+  else
+    image.floats.assign(pixels * image.channels.size(), 0.0f);
+  return image;
+}
+
+/// Layers are parted by dots: a name must not hold any, nor be that of another light.
+std::string light_layer_name(const Scene& scene, size_t light) {
+  std::string name = scene.lights[light].name;
+  for (char& c : name)
+    if (c == '.' || static_cast<unsigned char>(c) < 32) c = '_';
+  size_t same = 0;
+  for (const Light& other : scene.lights) same += other.name == scene.lights[light].name;
+  if (name.empty() || same > 1) name += (name.empty() ? "light" : "_") + std::to_string(light);
+  return "direct." + name;
+}
+
+float luminance(const Rgb& c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; }
+
+void put(float* out, float v) { out[0] = v; }
+void put(float* out, const Vec2f& v) { out[0] = v.x, out[1] = v.y; }
+void put(float* out, const Rgb& c) { out[0] = c.r, out[1] = c.g, out[2] = c.b; }
+void put(float* out, const Vec3f& v) { out[0] = v.x, out[1] = v.y, out[2] = v.z; }
+
+}  // namespace
+
+const char* layer_name(Layer layer) { return kNames[size_t(layer)]; }
+
+std::vector<LayerImage> empty_layers(const Scene& scene, std::span<const Layer> layers, int width, int height) {
+  const size_t pixels = size_t(width) * size_t(height);
+  std::vector<LayerImage> images;
+  for (const Layer layer : layers) {
+    if (layer != Layer::lights)
+      images.push_back(empty_layer(layer, layer_name(layer), pixels));
+    else
+      for (size_t i = 0; i < scene.lights.size(); ++i)
+        images.push_back(empty_layer(layer, light_layer_name(scene, i), pixels));
+  }
+  return images;
+}
+
+LayerRecorder::LayerRecorder(const Scene& scene, const Camera& camera, std::span<const Layer> layers,
+                             std::vector<LayerImage>& images, int image_width)
+    : scene_(scene),
+      camera_(camera),
+      layers_(layers),
+      images_(images),
+      image_width_(image_width),
+      pixels_(size_t(kCellSize * kCellSize)),
+      by_light_(pixels_.size() * scene.lights.size()) {}
+
+void LayerRecorder::begin_sample(int sample, const PathWave& camera_rays) {
+  sample_ = sample;
+  followed_.begin(camera_rays.size(), {});
+  for (size_t i = 0; i < camera_rays.size(); ++i)
+    followed_.pending(i) = {camera_rays.paths[i].pixel, Branch::view, true};
+}
+
+void LayerRecorder::take_wave(size_t first) {
+  followed_.take_wave(first);
+  wave_size_ = followed_.wave_size();
+  since_ = Clock::now();
+}
+
+void LayerRecorder::charge(uint32_t pixel, Clock::duration time) {
+  pixels_[pixel].microseconds += std::chrono::duration<float, std::micro>(time).count();
+}
+
+void LayerRecorder::look_at(size_t i) {
+  const auto now = Clock::now();
+  if (i == 0)
+    for (size_t k = 0; k < wave_size_; ++k) charge(followed_[k].pixel, (now - since_) / int64_t(wave_size_));
+  else
+    charge(looked_at_.pixel, now - since_);
+  since_ = now;
+  looked_at_ = followed_[i];
+  ++pixel().rays;
+}
+
+Rgb LayerRecorder::albedo(const ShadedHit& hit) const {
+  const Material& material = scene_.materials[hit.surface.material];
+  const SurfaceInputs inputs = hit.surface.inputs();
+  const TextureTable table = texture_table(scene_);
+  switch (material.model) {
+    case ShadingModel::unlit:
+      return emission(material, table, inputs);
+    case ShadingModel::phong:
+      return phong_bsdf(material, table, inputs).diffuse;
+    case ShadingModel::metallic_roughness:
+      break;
+  }
+  return metallic_roughness_bsdf(material, table, inputs).base_color;
+}
+
+void LayerRecorder::hit(const ShadedHit& hit) {
+  if (!looked_at_.camera) return;
+  Pixel& p = pixel();
+  const SurfacePoint& s = hit.surface;
+  p.albedo += albedo(hit), p.normal += hit.n, p.geometric_normal += s.ng_world;
+  if (sample_ > 0) return;
+  const Affine3d& m = camera_.world_from_camera;
+  p.depth = float(-dot(s.p_world - m.origin, m.z)), p.position = Vec3f(s.p_world);
+  p.ids = surface_ids(scene_, hit.ids);
+  if (s.uv_count > 0) p.uv = s.uvs[0];
+}
+
+void LayerRecorder::add_to_branch(const Followed& of, const Rgb& light, Rgb Pixel::*view) {
+  Pixel& p = pixels_[of.pixel];
+  switch (of.branch) {
+    case Branch::view:
+      p.*view += light;
+      break;
+    case Branch::reflected:
+      p.reflected += light;
+      break;
+    case Branch::refracted:
+      p.refracted += light;
+  }
+}
+
+void LayerRecorder::add(LightTerm term, const Rgb& light) {
+  constexpr std::array kSums{&Pixel::background, &Pixel::background, &Pixel::emission, &Pixel::ambient};
+  add_to_branch(looked_at_, light, kSums[size_t(term)]);
+}
+
+void LayerRecorder::spawn(const Rayf&, const Path& path, SpawnOutcome outcome) {
+  if (outcome != SpawnOutcome::traced) return;
+  Followed next{looked_at_.pixel, looked_at_.branch, false};
+  if (next.branch == Branch::view && path.kind == RayKind::mirror) next.branch = Branch::reflected;
+  if (next.branch == Branch::view && path.kind == RayKind::refracted) next.branch = Branch::refracted;
+  followed_.spawn(next);
+}
+
+void LayerRecorder::ask(const LightQuery& query) {
+  const Rgb all = query.weight * query.arriving * (query.diffuse + query.specular);
+  asked_.push_back({looked_at_, query.light, luminance(all)});
+  ++pixel().rays;
+}
+
+void LayerRecorder::answer(size_t i, const Rgb&, const Rgb& light) {
+  const Asked& asked = asked_[i];
+  add_to_branch(asked.of, light, &Pixel::direct);
+  if (asked.of.branch != Branch::view) return;
+  by_light_[asked.of.pixel * scene_.lights.size() + asked.light] += light;
+  pixels_[asked.of.pixel].arrived += luminance(light), pixels_[asked.of.pixel].unshadowed += asked.unshadowed;
+}
+
+/// The time since the last ray was looked at: its own shading is forgotten against that of all shadow rays.
+void LayerRecorder::answered() {
+  const auto now = Clock::now();
+  for (const Asked& asked : asked_) charge(asked.of.pixel, (now - since_) / int64_t(asked_.size()));
+  since_ = now;
+  asked_.clear();
+}
+
+void LayerRecorder::store(const Pixel& p, Layer layer, float scale, LayerImage& image, size_t at) {
+  float* out = image.floats.empty() ? nullptr : &image.floats[at * image.channels.size()];
+  switch (layer) {
+    case Layer::albedo:
+      return put(out, p.albedo * scale);
+    case Layer::normal:
+      return put(out, p.normal * scale);
+    case Layer::geometric_normal:
+      return put(out, p.geometric_normal * scale);
+    case Layer::depth:
+      return put(out, p.depth);
+    case Layer::position:
+      return put(out, p.position);
+    case Layer::uv:
+      return put(out, p.uv);
+    case Layer::node:
+      return void(image.ids[at] = p.ids.node);
+    case Layer::primitive:
+      return void(image.ids[at] = p.ids.primitive);
+    case Layer::material:
+      return void(image.ids[at] = p.ids.material);
+    case Layer::emission:
+      return put(out, p.emission * scale);
+    case Layer::ambient:
+      return put(out, p.ambient * scale);
+    case Layer::background:
+      return put(out, p.background * scale);
+    case Layer::direct:
+      return put(out, p.direct * scale);
+    case Layer::lights:
+      return;
+    case Layer::reflected:
+      return put(out, p.reflected * scale);
+    case Layer::refracted:
+      return put(out, p.refracted * scale);
+    case Layer::shadow:
+      return put(out, p.unshadowed > 0 ? p.arrived / p.unshadowed : 1.0f);
+    case Layer::samples:
+      return put(out, 1 / scale);
+    case Layer::rays:
+      return put(out, p.rays * scale);
+    case Layer::cost:
+      return put(out, p.microseconds * scale);
+  }
+}
+
+void LayerRecorder::finish(const Cell& cell, int samples) {
+  const float scale = 1.0f / float(samples);
+  for (int y = cell.y0; y < cell.y1; ++y)
+    for (int x = cell.x0; x < cell.x1; ++x) {
+      const auto in_cell = size_t((y - cell.y0) * kCellSize + (x - cell.x0));
+      const size_t at = size_t(y) * size_t(image_width_) + size_t(x);
+      const Pixel& p = pixels_[in_cell];
+      auto image = images_.begin();
+      for (const Layer layer : layers_) {
+        if (layer == Layer::lights) {
+          for (size_t k = 0; k < scene_.lights.size(); ++k)
+            put(&(image++)->floats[3 * at], by_light_[in_cell * scene_.lights.size() + k] * scale);
+          continue;
+        }
+        store(p, layer, scale, *image++, at);
+      }
+    }
+}
+
+}  // namespace alhazen
