@@ -204,7 +204,8 @@ void check_layers(const RenderArguments& arguments) {
   if (arguments.multipart && (layers == 0 || !exr)) throw UsageError("--multipart: needs --aov and an .exr file");
   if (layers == 0) return;
   if (arguments.options.integrator == Integrator::signature) throw UsageError("--aov: a signature has no layers");
-  const bool several = layers > 1 || arguments.options.layers[0] == Layer::lights;
+  const Layer first = arguments.options.layers[0];
+  const bool several = layers > 1 || first == Layer::lights || first >= Layer::crypto_node;
   if (!exr && (several || image_format(arguments.output).linear))
     throw UsageError("--aov: '" + arguments.output +
                      "' cannot hold layers; .exr can, and .png and the like show one alone");

@@ -28,20 +28,22 @@ struct Channel {
 struct Part {
   std::string name;
   std::vector<Channel> channels;
+  Metadata attributes{};
+  bool exact = false;  // takes no compression that loses anything
 };
 
 OIIO::TypeDesc float_type(bool half) { return half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT; }
 
 Part color_part(const ColorImage& color, bool half) {
-  Part part{"rgba", {}};
+  Part part{.name = "rgba", .channels = {}};
   for (size_t c = 0; c < 4; ++c)
     part.channels.push_back({color.channels[c], float_type(half), color.pixels.data() + c, nullptr, 4});
   return part;
 }
 
 Part layer_part(const LayerImage& layer, bool half) {
-  Part part{layer.name, {}};
-  const bool color = layer.channels[0] == "R";
+  Part part{layer.name, {}, layer.attributes, layer.exact || layer.floats.empty()};
+  const bool color = layer.channels[0] == "R" && !layer.exact;
   for (size_t c = 0; c < layer.channels.size(); ++c) {
     const std::string name = layer.name + "." + layer.channels[c];
     if (layer.floats.empty())
@@ -62,8 +64,9 @@ OIIO::ImageSpec spec_of(const Part& part, int width, int height, const ImageEnco
   spec.alpha_channel = part.channels[0].name == "R" ? 3 : -1, spec.z_channel = -1;
   spec.attribute("oiio:subimagename", part.name);
   spec.attribute("oiio:ColorSpace", "Linear");
-  spec.attribute("compression", encoding.compression.empty() ? "zip" : encoding.compression);
-  for (const auto& [name, value] : metadata) spec.attribute(name, value);
+  spec.attribute("compression", encoding.compression.empty() || part.exact ? "zip" : encoding.compression);
+  for (const Metadata& attributes : {metadata, part.attributes})
+    for (const auto& [name, value] : attributes) spec.attribute(name, value);
   return spec;
 }
 
@@ -94,10 +97,13 @@ std::vector<Part> parts_of(const ColorImage& color, const std::vector<LayerImage
   std::vector<Part> parts{color_part(color, half)};
   for (const LayerImage& layer : layers) {
     Part part = layer_part(layer, half);
-    if (multipart)
+    if (multipart) {
       parts.push_back(std::move(part));
-    else
-      for (Channel& channel : part.channels) parts[0].channels.push_back(std::move(channel));
+      continue;
+    }
+    for (Channel& channel : part.channels) parts[0].channels.push_back(std::move(channel));
+    parts[0].attributes.insert(parts[0].attributes.end(), part.attributes.begin(), part.attributes.end());
+    parts[0].exact |= part.exact;
   }
   return parts;
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace alhazen {
@@ -30,8 +31,11 @@ enum class Layer : uint8_t {
   samples,
   rays,  // of all kinds, for a sample
   cost,  // microseconds of one processor for a sample: shading, and an even share of what the traversal of waves took
+  crypto_node,  // mattes of everything named: Cryptomatte, six ranks in three images
+  crypto_mesh,
+  crypto_material,
 };
-inline constexpr size_t kLayers = 20;
+inline constexpr size_t kLayers = 23;
 
 [[nodiscard]] const char* layer_name(Layer layer);
 
@@ -41,6 +45,8 @@ struct LayerImage {
   std::vector<std::string> channels;  // "R", "G", "B"; "X", "Y", "Z"; "U", "V"; "Z"; "Y"
   std::vector<float> floats;          // interleaved; empty where the layer holds ids
   std::vector<uint32_t> ids;
+  bool exact = false;                                           // its floats must arrive to the bit
+  std::vector<std::pair<std::string, std::string>> attributes;  // of the file that holds it
 };
 
 }  // namespace alhazen

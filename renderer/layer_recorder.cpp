@@ -1,14 +1,17 @@
 #include "renderer/layer_recorder.h"
 
+#include <algorithm>
+
 #include "materials/metallic_roughness.h"
 #include "materials/phong.h"
 
 namespace alhazen {
 namespace {
 
-constexpr std::array kNames{"albedo",    "normal",    "geometric_normal", "depth",   "position",   "uv",     "node",
-                            "primitive", "material",  "emission",         "ambient", "background", "direct", "lights",
-                            "reflected", "refracted", "shadow",           "samples", "rays",       "cost"};
+constexpr std::array kNames{"albedo", "normal",    "geometric_normal", "depth",       "position",       "uv",
+                            "node",   "primitive", "material",         "emission",    "ambient",        "background",
+                            "direct", "lights",    "reflected",        "refracted",   "shadow",         "samples",
+                            "rays",   "cost",      "crypto_node",      "crypto_mesh", "crypto_material"};
 static_assert(kNames.size() == kLayers);
 
 bool holds_ids(Layer layer) { return layer == Layer::node || layer == Layer::primitive || layer == Layer::material; }
@@ -37,7 +40,7 @@ std::vector<std::string> channels_of(Layer layer) {
 }
 
 LayerImage empty_layer(Layer layer, const std::string& name, size_t pixels) {
-  LayerImage image{name, channels_of(layer), {}, {}};
+  LayerImage image{name, channels_of(layer), {}, {}, false, {}};
   if (holds_ids(layer))
     image.ids.assign(pixels, kNone);
   else
@@ -56,6 +59,59 @@ std::string light_layer_name(const Scene& scene, size_t light) {
   return "direct." + name;
 }
 
+std::string name_or_index(const std::string& name, const char* kind, uint32_t index) {
+  return name.empty() ? std::string(kind) + " " + std::to_string(index) : name;
+}
+
+std::string node_name(const Scene& scene, uint32_t node) {
+  return name_or_index(node < scene.node_names.size() ? scene.node_names[node] : "", "node", node);
+}
+
+/// Shapes have no names.
+std::string mesh_name(const Scene& scene, uint32_t object) {
+  if (is_shape(scene.geometry, object)) return "shape " + std::to_string(shape_instance(scene.geometry, object).shape);
+  const uint32_t mesh = scene.geometry.mesh_instances[object].mesh;
+  return name_or_index(scene.geometry.meshes[mesh].name, "mesh", mesh);
+}
+
+std::string material_name(const Scene& scene, uint32_t material) {
+  if (material + 1 == scene.materials.size()) return "default";
+  return name_or_index(scene.materials[material].name, "material", material);
+}
+
+constexpr std::array kCryptoNames{"CryptoNode", "CryptoMesh", "CryptoMaterial"};
+constexpr size_t kCryptoImages = 3;  // of two ranks each
+
+bool is_crypto(Layer layer) { return layer >= Layer::crypto_node; }
+size_t crypto_index(Layer layer) { return size_t(layer) - size_t(Layer::crypto_node); }
+
+/// What may be seen of a kind.
+std::vector<std::string> crypto_names(const Scene& scene, Layer layer) {
+  std::vector<std::string> names;
+  if (layer == Layer::crypto_material)
+    for (uint32_t i = 0; i < scene.materials.size(); ++i) names.push_back(material_name(scene, i));
+  const size_t objects = scene.geometry.mesh_instances.size() + scene.geometry.shape_instances.size();
+  for (uint32_t i = 0; i < objects && layer != Layer::crypto_material; ++i)
+    names.push_back(layer == Layer::crypto_node ? node_name(scene, node_of(scene.geometry, i)) : mesh_name(scene, i));
+  return names;
+}
+
+void add_crypto_images(const Scene& scene, Layer layer, size_t pixels, std::vector<LayerImage>& images) {
+  const std::string name = kCryptoNames[crypto_index(layer)];
+  for (size_t k = 0; k < kCryptoImages; ++k) {
+    images.push_back(
+        {name + "0" + std::to_string(k), {"R", "G", "B", "A"}, std::vector<float>(4 * pixels, 0.0f), {}, true, {}});
+    images.back().attributes = cryptomatte_metadata(name, crypto_names(scene, layer));
+  }
+}
+
+/// The two largest ranks of the first image, and so on.
+void put(const std::vector<Coverage>& ranked, size_t image, float* out) {
+  for (size_t r = 0; r < 2; ++r)
+    if (const size_t at = 2 * image + r; at < ranked.size())
+      out[2 * r] = ranked[at].id, out[2 * r + 1] = ranked[at].coverage;
+}
+
 float luminance(const Rgb& c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; }
 
 void put(float* out, float v) { out[0] = v; }
@@ -71,7 +127,9 @@ std::vector<LayerImage> empty_layers(const Scene& scene, std::span<const Layer> 
   const size_t pixels = size_t(width) * size_t(height);
   std::vector<LayerImage> images;
   for (const Layer layer : layers) {
-    if (layer != Layer::lights)
+    if (is_crypto(layer))
+      add_crypto_images(scene, layer, pixels, images);
+    else if (layer != Layer::lights)
       images.push_back(empty_layer(layer, layer_name(layer), pixels));
     else
       for (size_t i = 0; i < scene.lights.size(); ++i)
@@ -133,7 +191,20 @@ Rgb LayerRecorder::albedo(const ShadedHit& hit) const {
   return metallic_roughness_bsdf(material, table, inputs).base_color;
 }
 
+/// As much as the view sees of the surface, through what lies before it.
+void LayerRecorder::add_coverage(const ShadedHit& hit) {
+  const float seen = max_component(hit.arriving) * hit.alpha;
+  const auto add = [&](Layer layer, const auto& name) {
+    if (std::ranges::find(layers_, layer) != layers_.end())
+      cover(pixel().mattes[crypto_index(layer)], name_id(name()), seen);
+  };
+  add(Layer::crypto_node, [&] { return node_name(scene_, node_of(scene_.geometry, hit.ids.object)); });
+  add(Layer::crypto_mesh, [&] { return mesh_name(scene_, hit.ids.object); });
+  add(Layer::crypto_material, [&] { return material_name(scene_, hit.surface.material); });
+}
+
 void LayerRecorder::hit(const ShadedHit& hit) {
+  if (looked_at_.branch == Branch::view) add_coverage(hit);
   if (!looked_at_.camera) return;
   Pixel& p = pixel();
   const SurfacePoint& s = hit.surface;
@@ -224,7 +295,10 @@ void LayerRecorder::store(const Pixel& p, Layer layer, float scale, LayerImage& 
     case Layer::direct:
       return put(out, p.direct * scale);
     case Layer::lights:
-      return;
+    case Layer::crypto_node:
+    case Layer::crypto_mesh:
+    case Layer::crypto_material:
+      return;  // several images, see finish
     case Layer::reflected:
       return put(out, p.reflected * scale);
     case Layer::refracted:
@@ -252,6 +326,13 @@ void LayerRecorder::finish(const Cell& cell, int samples) {
         if (layer == Layer::lights) {
           for (size_t k = 0; k < scene_.lights.size(); ++k)
             put(&(image++)->floats[3 * at], by_light_[in_cell * scene_.lights.size() + k] * scale);
+          continue;
+        }
+        if (is_crypto(layer)) {
+          std::vector<Coverage> ranked = p.mattes[crypto_index(layer)];
+          for (Coverage& matte : ranked) matte.coverage *= scale;
+          rank(ranked);
+          for (size_t k = 0; k < kCryptoImages; ++k) put(ranked, k, &(image++)->floats[4 * at]);
           continue;
         }
         store(p, layer, scale, *image++, at);

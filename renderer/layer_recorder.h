@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "renderer/camera_cell.h"
+#include "renderer/cryptomatte.h"
 #include "renderer/layer.h"
 #include "renderer/trace_observer.h"
 
@@ -62,12 +63,14 @@ class LayerRecorder final : public TraceObserver {
     Vec2f uv{};
     float depth = std::numeric_limits<float>::infinity(), arrived = 0, unshadowed = 0, rays = 0, microseconds = 0;
     SurfaceIds ids{kNone, kNone, kNone};
+    std::array<std::vector<Coverage>, 3> mattes{};  // by node, mesh, material
   };
 
   Pixel& pixel() { return pixels_[looked_at_.pixel]; }
   void add_to_branch(const Followed& of, const Rgb& light, Rgb Pixel::*view);
   void charge(uint32_t pixel, Clock::duration time);
   static void store(const Pixel& p, Layer layer, float scale, LayerImage& image, size_t at);
+  void add_coverage(const ShadedHit& hit);
   [[nodiscard]] Rgb albedo(const ShadedHit& hit) const;
 
   const Scene& scene_;

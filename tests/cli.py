@@ -303,6 +303,14 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(moved.returncode, 6)
         self.assertGreater(json.loads(moved.stdout)["diff"]["nodes"], 5)
 
+    def test_layers_come_with_the_picture_or_one_alone(self):
+        for name, layers in (("a.exr", "normal,lights,crypto_node"), ("b.png", "rays"), ("c.jpg", "normal")):
+            self.assertEqual(self.render(name, "--aov", layers).returncode, 0)
+        self.assertEqual(self.render("d.exr", "--aov", "albedo,node", "--multipart", "--half").returncode, 0)
+        for wrong in (["e.exr", "--aov", "norml"], ["e.png", "--aov", "normal,uv"], ["e.png", "--aov", "crypto_node"],
+                      ["e.exr", "--multipart"], ["e.hdr", "--aov", "depth"], ["e.exr", "--aov", "uv", "--integrator", "signature"]):
+            self.assertEqual(self.render(*wrong).returncode, 2, wrong)
+
     def test_a_tree_explains_a_pixel_in_every_form(self):
         pixel = ["tree", SCENE, "--size", "96x54", "--pixel", "39,26"]
         self.assertRegex(run(*pixel, "--explain").stdout, "^Pixel 39,26 sees glass ")
