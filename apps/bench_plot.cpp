@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "apps/sample_statistics.h"
+#include "inspect/xml.h"
 
 namespace alhazen {
 namespace {
@@ -31,17 +32,8 @@ std::string format(const char* pattern, Arguments... arguments) {
   return text.data();
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    const bool special = c == '<' || c == '>' || c == '&' || c == '"' || (c >= 0 && c < ' ');
-    out += special ? "&#" + std::to_string(c < ' ' ? '?' : c) + ";" : std::string(1, c);
-  }
-  return out;
-}
-
 std::string label(double x, double y, const char* anchor, const std::string& text) {
-  return format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", x, y, anchor) + escaped(text) + "</text>\n";
+  return format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", x, y, anchor) + xml_escaped(text) + "</text>\n";
 }
 
 std::string rule(double x1, double y1, double x2, double y2, const char* colour) {
