@@ -172,8 +172,8 @@ bool alike(const MeshPose& a, const MeshPose& b) {
 /// Instances come in the order of their nodes.
 template <class Instance>
 std::span<const Instance> of_node(const std::vector<Instance>& all, uint32_t node) {
-  const auto [first, last] = std::ranges::equal_range(all, node, {}, &Instance::node);
-  return {first, last};
+  const auto first = std::ranges::lower_bound(all, node, {}, &Instance::node);
+  return {first, std::ranges::upper_bound(first, all.end(), node, {}, &Instance::node)};
 }
 
 class Recorder {

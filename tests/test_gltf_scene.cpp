@@ -1,7 +1,6 @@
 // What the loader makes of valid files: meshes, materials, nodes, cameras, lights, shapes.
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <random>
 
 #include "gltf_builder.h"
@@ -10,7 +9,6 @@ namespace alhazen {
 namespace {
 
 using Triangles = std::vector<std::array<uint32_t, 3>>;
-constexpr double kPi = std::numbers::pi;
 
 // ---- Meshes ----
 
