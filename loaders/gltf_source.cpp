@@ -93,7 +93,7 @@ tinygltf::Model parse_core(const JsonDocument& document) {
 /// What the elements of a file's arrays take besides their JSON: tinygltf's and ours, found out by measuring.
 void take_elements(const JsonRef& root, LoadBudget& budget) {
   constexpr std::pair<const char*, uint64_t> kBytes[] = {
-      {"nodes", 1000},  {"materials", 3600}, {"textures", 400}, {"samplers", 400},    {"scenes", 400}, {"images", 200},
+      {"nodes", 1000}, {"materials", 3600}, {"textures", 400}, {"samplers", 400},    {"scenes", 400}, {"images", 200},
       {"meshes", 500}, {"accessors", 600},  {"cameras", 1200}, {"bufferViews", 500}, {"buffers", 100}};
   for (const auto& [key, bytes] : kBytes)
     if (root.has(key)) budget.take(root[key], root[key].value().size(), bytes);

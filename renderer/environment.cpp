@@ -107,7 +107,8 @@ Rgb gathered(const std::vector<ColorImage>& levels, const std::vector<LobeSample
   for (const LobeSample& sample : lobe) {
     const Vec3f& d = sample.direction;
     sum +=
-        bilinear(levels[size_t(sample.level)], equirectangular_place(frame.t * d.x + frame.b * d.y + frame.n * d.z)) * sample.weight;
+        bilinear(levels[size_t(sample.level)], equirectangular_place(frame.t * d.x + frame.b * d.y + frame.n * d.z)) *
+        sample.weight;
   }
   return sum;
 }
@@ -178,7 +179,8 @@ Environment make_environment(ColorImage image) {
     const int width = std::max(32, 256 >> k);
     ColorImage level = blank(width, width / 2);
     const auto lobe = lobe_samples(float(k) / (kLevels - 1), int(source.size()), source[0].width * source[0].height);
-    fill(level, [&](int x, int y) { return gathered(source, lobe, equirectangular_direction(x, y, width, width / 2)); });
+    fill(level,
+         [&](int x, int y) { return gathered(source, lobe, equirectangular_direction(x, y, width, width / 2)); });
     environment.levels.push_back(std::move(level));
   }
   return environment;
