@@ -10,8 +10,8 @@
 #include "apps/pick_camera.h"
 #include "core/fork_join.h"
 #include "loaders/environment_file.h"
-#include "loaders/gltf_file.h"
 #include "loaders/image_decode.h"
+#include "loaders/record_motion.h"
 
 namespace alhazen {
 namespace {
@@ -26,12 +26,11 @@ Environment environment(const RenderArguments& arguments) {
   return environment;
 }
 
-LoadedScene load(const RenderArguments& arguments) {
-  const auto budget = std::make_shared<LoadBudget>(arguments.limits);
-  GltfFile file(arguments.scene, print_warning, arguments.choice, arguments.time, budget);
+LoadedScene load(GltfFile& file, const RenderArguments& arguments) {
   LoadedScene loaded = file.load(arguments.time.time.value_or(0));
   replace_environment(loaded.scene, arguments);
   bake_single_instances(loaded.scene.geometry, file.moving_meshes());
+  open_shutter(file, loaded.scene, arguments);
   return loaded;
 }
 
@@ -56,6 +55,16 @@ void set_up_lights(Scene& scene, const Camera& camera, const RenderArguments& ar
     add_studio_lights(scene, camera);
 }
 
+void open_shutter(GltfFile& file, Scene& scene, const RenderArguments& arguments) {
+  if (arguments.shutter > 0 && file.is_animated()) record_motion(file, scene, *arguments.time.time, arguments.shutter);
+}
+
+BuildOptions build_options(const GltfFile& file, const RenderArguments& arguments, int threads) {
+  BuildOptions options{.threads = threads, .watertight = arguments.watertight};
+  if (file.is_animated()) options.moving = {file.moving_meshes(), file.deforming_meshes(), file.moving_nodes()};
+  return options;
+}
+
 std::unique_ptr<AcceleratedScene> build_scene(LoadedScene& loaded, const SurfaceFilter& filter,
                                               const BuildOptions& options) {
   std::unique_ptr<AcceleratedScene> accelerated;
@@ -72,12 +81,15 @@ std::unique_ptr<AcceleratedScene> build_scene(LoadedScene& loaded, const Surface
   return accelerated;
 }
 
-PreparedScene::PreparedScene(const RenderArguments& arguments) : loaded(load(arguments)) {
+PreparedScene::PreparedScene(const RenderArguments& arguments)
+    : file(arguments.scene, print_warning, arguments.choice, arguments.time,
+           std::make_shared<LoadBudget>(arguments.limits)),
+      loaded(load(file, arguments)) {
   const RenderOptions& options = arguments.options;
   camera = pick_camera(loaded.scene, arguments.camera, double(options.width) / options.height);
   set_up_lights(loaded.scene, camera, arguments);
   const SurfaceFilter filter = surface_filter(loaded.scene, opacity);
-  accelerated = build_scene(loaded, filter, {.threads = options.threads, .watertight = arguments.watertight});
+  accelerated = build_scene(loaded, filter, build_options(file, arguments, options.threads));
 }
 
 }  // namespace alhazen

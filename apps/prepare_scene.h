@@ -7,7 +7,7 @@
 
 #include "accel/accelerated_scene.h"
 #include "apps/render_arguments.h"
-#include "loaders/gltf.h"
+#include "loaders/gltf_file.h"
 
 namespace alhazen {
 
@@ -20,13 +20,21 @@ void replace_environment(Scene& scene, const RenderArguments& arguments);
 /// The lights and background that the arguments ask for; studio lights where there would be none.
 void set_up_lights(Scene& scene, const Camera& camera, const RenderArguments& arguments);
 
+/// Gives what the file's animations move its motion, from the arguments' time on, at which the scene stands, for as
+/// long as the shutter stays open.
+void open_shutter(GltfFile& file, Scene& scene, const RenderArguments& arguments);
+
+/// What `build_scene` is told of the file and the arguments. Refers to the file.
+[[nodiscard]] BuildOptions build_options(const GltfFile& file, const RenderArguments& arguments, int threads);
+
 /// Builds the hierarchies while the textures are decoded, if they are not yet.
 [[nodiscard]] std::unique_ptr<AcceleratedScene> build_scene(LoadedScene& loaded, const SurfaceFilter& filter,
                                                             const BuildOptions& options);
 
-/// One scene, its camera and lights, where a command needs no more than a still. Does not move: what is built reads
+/// One scene, its camera and lights, where a command needs no more than a still. Stays where it is: what is built reads
 /// the scene in place.
 struct PreparedScene {
+  GltfFile file;
   LoadedScene loaded;
   Camera camera;
   std::vector<Opacity> opacity;

@@ -100,12 +100,6 @@ void add_frame_options(CLI::App& command, RenderArguments& arguments) {
       ->check(finite())
       ->check(CLI::PositiveNumber.description(""))
       ->capture_default_str();
-  command
-      .add_option("--shutter", arguments.shutter,
-                  "Motion blur: the shutter opens at the time, or at each frame's, and stays open for so long")
-      ->type_name("SECONDS")
-      ->check(duration())
-      ->default_str("0");
 }
 
 void add_picture_options(CLI::App& command, RenderArguments& arguments) {
@@ -248,6 +242,12 @@ void add_view_options(CLI::App& command, RenderArguments& arguments) {
 
 void add_tracing_options(CLI::App& command, RenderArguments& arguments) {
   RenderOptions& options = arguments.options;
+  command
+      .add_option("--shutter", arguments.shutter,
+                  "Motion blur: the shutter opens at the time, or at each frame's, and stays open for so long")
+      ->type_name("SECONDS")
+      ->check(duration())
+      ->default_str("0");
   command.add_option("--spp", options.samples, "Samples per pixel; 1 takes the pixel's centre")
       ->type_name("N")
       ->check(CLI::Range(1, 65536).description(""))

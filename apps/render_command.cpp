@@ -22,7 +22,6 @@
 #include "inspect/layer_picture.h"
 #include "loaders/gltf_file.h"
 #include "loaders/layer_file.h"
-#include "loaders/record_motion.h"
 #include "renderer/framing.h"
 
 namespace alhazen {
@@ -194,17 +193,8 @@ struct Stage {
     const SurfaceFilter filter = surface_filter(loaded.scene, opacity);
     if (accelerated && accelerated->update(filter)) return *accelerated;
     accelerated.reset();
-    MovingParts moving;
-    if (file.is_animated()) moving = {file.moving_meshes(), file.deforming_meshes(), file.moving_nodes()};
-    const BuildOptions options{.threads = threads, .watertight = arguments.watertight, .moving = moving};
-    accelerated = build_scene(loaded, filter, options);
+    accelerated = build_scene(loaded, filter, build_options(file, arguments, threads));
     return *accelerated;
-  }
-
-  /// From the arguments' time on, which is that of the scene.
-  void open_shutter(const RenderArguments& arguments) {
-    if (arguments.shutter > 0 && file.is_animated())
-      record_motion(file, loaded.scene, *arguments.time.time, arguments.shutter);
   }
 };
 
@@ -221,7 +211,7 @@ int render_still(const RenderArguments& arguments, Stage& stage, std::optional<i
   const int threads = thread_count(options);
   Scene& scene = stage.loaded.scene;
   PhaseSeconds seconds;
-  stage.open_shutter(arguments);
+  open_shutter(stage.file, scene, arguments);
   const double aspect = double(options.width) / options.height;
   const Camera camera = stage.framing ? *stage.framing : pick_camera(scene, arguments.camera, aspect);
   set_up_lights(scene, camera, arguments);

@@ -96,7 +96,7 @@ int run_tree(const TreeArguments& arguments) {
   const std::string& output = arguments.render.output;
   const Form form = form_of(output);
   if (!output.empty()) (void)PartFile(output);  // before the work is done
-  const PreparedScene prepared(arguments.render);
+  const PreparedScene prepared(still_arguments(arguments.render));
   const RayTree tree = trace_pixel(prepared.scene(), *prepared.accelerated, prepared.camera, arguments.render.options,
                                    arguments.x, arguments.y, arguments.sample);
   if (arguments.explain) print(explanation(prepared.scene(), tree));

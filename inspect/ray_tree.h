@@ -81,6 +81,7 @@ struct TreeRay {
 struct RayTree {
   int x = 0, y = 0, width = 0, height = 0;  // the pixel, and the picture's size
   int sample = 0, samples = 1;
+  std::optional<float> time{};  // of the shutter, from 0 to 1, where anything moves
   std::vector<TreeRay> rays{};  // the camera ray first
   Rgb radiance{};               // of the sample
   Rgb pixel{};                  // of all samples, as the picture has it

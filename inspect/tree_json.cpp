@@ -103,6 +103,7 @@ std::string tree_json(const Scene& scene, const RayTree& tree, int indent) {
   Json json{{"pixel", {tree.x, tree.y}},      {"size", {tree.width, tree.height}}, {"sample", tree.sample},
             {"samples", tree.samples},        {"value", list(tree.pixel)},         {"alpha", number(tree.alpha)},
             {"radiance", list(tree.radiance)}};
+  if (tree.time) json["time"] = number(*tree.time);
   json["rays"] = Json::array();
   const auto lists = children(tree);
   const std::vector<Rgb> branch = branch_light(tree);

@@ -31,9 +31,10 @@ Rgb ratio(const Rgb& a, const Rgb& b) {
 
 }  // namespace
 
-void TreeRecorder::begin_sample(int sample, const PathWave& camera_rays) {
+void TreeRecorder::begin_sample(int sample, const PathWave& camera_rays, const Lanes<float>& times) {
   followed_.begin(camera_rays.size(), kNone);
   if (sample != sample_) return;
+  if (times.size() > 0) time_ = times[pixel_];
   for (size_t i = 0; i < camera_rays.size(); ++i) {
     if (camera_rays.paths[i].pixel != pixel_) continue;
     followed_.pending(i) = uint32_t(rays_.size());

@@ -13,7 +13,10 @@ class TreeRecorder final : public TraceObserver {
   /// What was recorded: the rays, and nothing else of the tree.
   [[nodiscard]] std::vector<TreeRay> take() { return std::move(rays_); }
 
-  void begin_sample(int sample, const PathWave& camera_rays) override;
+  /// When they are traced, of the shutter; nothing where all stands still.
+  [[nodiscard]] std::optional<float> time() const { return time_; }
+
+  void begin_sample(int sample, const PathWave& camera_rays, const Lanes<float>& times) override;
   void take_wave(size_t first) override { followed_.take_wave(first); }
   void look_at(size_t i) override { ray_ = followed_[i]; }
   void hit(const ShadedHit& hit) override;
@@ -36,6 +39,7 @@ class TreeRecorder final : public TraceObserver {
   int sample_;
   uint32_t ray_ = kNone;  // looked at; kNone: of another pixel or sample
   uint32_t order_ = 0;
+  std::optional<float> time_;
   std::vector<TreeRay> rays_;
   FollowedRays<uint32_t> followed_;  // indices into rays_
   std::vector<AskedLight> asked_;

@@ -11,6 +11,12 @@
 namespace alhazen {
 namespace {
 
+std::string percent(float share) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%.0f %%", 100 * double(share));
+  return text;
+}
+
 std::string point(const Vec3d& p) { return short_number(p.x) + " " + short_number(p.y) + " " + short_number(p.z); }
 
 /// Lines of a tree, each after the bars of the branches that go on below.
@@ -43,6 +49,7 @@ class TreeText {
     if (tree_.samples > 1)
       text_ += "; sample " + std::to_string(tree_.sample) + " of " + std::to_string(tree_.samples) + ": " +
                swatch(tree_.radiance) + short_color(tree_.radiance);
+    if (tree_.time) text_ += ", " + percent(*tree_.time) + " into the shutter's time";
     text_ += "; " + std::to_string(tree_.rays.size()) + (tree_.rays.size() == 1 ? " ray\n" : " rays\n");
   }
 
@@ -109,12 +116,6 @@ class TreeText {
 };
 
 // ---- in sentences
-
-std::string percent(float share) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.0f %%", 100 * double(share));
-  return text;
-}
 
 /// From the camera to where most of the light comes from: the branch that outweighs what a ray adds by itself and all
 /// its sisters.

@@ -148,7 +148,7 @@ LayerRecorder::LayerRecorder(const Scene& scene, const Camera& camera, std::span
       pixels_(size_t(kCellSize * kCellSize)),
       by_light_(pixels_.size() * scene.lights.size()) {}
 
-void LayerRecorder::begin_sample(int sample, const PathWave& camera_rays) {
+void LayerRecorder::begin_sample(int sample, const PathWave& camera_rays, const Lanes<float>& /*times*/) {
   sample_ = sample;
   followed_.begin(camera_rays.size(), {});
   for (size_t i = 0; i < camera_rays.size(); ++i)

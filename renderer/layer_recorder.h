@@ -29,7 +29,7 @@ class LayerRecorder final : public TraceObserver {
   /// Takes the means over the samples to the images.
   void finish(const Cell& cell, int samples);
 
-  void begin_sample(int sample, const PathWave& camera_rays) override;
+  void begin_sample(int sample, const PathWave& camera_rays, const Lanes<float>& times) override;
   void take_wave(size_t first) override;
   void look_at(size_t i) override;
   void hit(const ShadedHit& hit) override;

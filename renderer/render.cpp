@@ -129,7 +129,7 @@ struct CellWorker {
       arena.clock.enter(Phase::generation);
       radiance.fill(Rgb(0.0f)), background.fill(0.0f);
       push_camera_rays(camera, options, cell, uint32_t(sample), moving, arena);
-      if (arena.observer) arena.observer->begin_sample(sample, arena.pending);
+      if (arena.observer) arena.observer->begin_sample(sample, arena.pending, arena.time_of_pixel);
       trace_whitted(scene, accelerated, options, arena, radiance.data(), background.data());
       arena.clock.enter(Phase::film);
       for (size_t p = 0; p < radiance.size(); ++p) {

@@ -48,8 +48,8 @@ class TraceObserver {
  public:
   virtual ~TraceObserver() = default;
 
-  /// The camera rays of a sample are pending.
-  virtual void begin_sample(int sample, const PathWave& camera_rays) = 0;
+  /// The camera rays of a sample are pending; `times` as WaveArena::time_of_pixel.
+  virtual void begin_sample(int sample, const PathWave& camera_rays, const Lanes<float>& times) = 0;
   /// The pending rays from `first` on become the wave: its ray i is the pending one first + i.
   virtual void take_wave(size_t first) = 0;
 

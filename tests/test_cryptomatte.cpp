@@ -12,6 +12,7 @@
 #include "loaders/layer_file.h"
 #include "renderer/cryptomatte.h"
 #include "tests/loaded_subject.h"
+#include "tests/moving_scene.h"
 
 namespace alhazen {
 namespace {
@@ -64,15 +65,18 @@ Decoded decode(const std::filesystem::path& file, const std::string& layer) {
   }
 }
 
-Decoded through_a_file(const Subject& subject, RenderOptions options, const std::string& layer,
-                       const ImageEncoding& encoding) {
-  options.layers = {Layer::crypto_node, Layer::crypto_mesh, Layer::crypto_material, Layer::albedo};
-  const RenderResult result = subject.result(options);
+Decoded through_a_file(const RenderResult& result, const std::string& layer, const ImageEncoding& encoding) {
   const auto file = std::filesystem::temp_directory_path() / ("alhazen-crypto-" + std::to_string(getpid()) + ".exr");
   write_layers(file, result.color, result.layers, false, encoding, {});
   const Decoded decoded = decode(file, layer);
   std::filesystem::remove(file);
   return decoded;
+}
+
+Decoded through_a_file(const Subject& subject, RenderOptions options, const std::string& layer,
+                       const ImageEncoding& encoding) {
+  options.layers = {Layer::crypto_node, Layer::crypto_mesh, Layer::crypto_material, Layer::albedo};
+  return through_a_file(subject.result(options), layer, encoding);
 }
 
 TEST(Cryptomatte, HashesAreMurmurs) {
@@ -117,6 +121,24 @@ TEST(Cryptomatte, MattesAddUpToAlpha) {
       for (size_t i = 0; i < sum.size(); ++i)
         ASSERT_NEAR(sum[i], picture.pixels[4 * i + 3], 1e-5f) << layer << " " << i;
     }
+  }
+}
+
+TEST(Cryptomatte, AMovingObjectsMatteIsItsShareOfTheTime) {
+  MovingScene scene(2);
+  const int wall = scene.rectangle(60, 20), bar = scene.rectangle(6, 20);
+  scene.root["nodes"][size_t(wall)]["name"] = "wall", scene.root["nodes"][size_t(bar)]["name"] = "bar";
+  scene.move(bar, {-10, 0, 1, 10, 0, 1});
+  MovingSubject subject(scene);
+  subject.open_shutter(0, 1);
+  RenderOptions options{.width = 40, .height = 4, .samples = 256};
+  options.layers = {Layer::crypto_node};
+  Decoded decoded = through_a_file(subject.result(options), "CryptoNode", {});
+  ASSERT_EQ(decoded.coverage.size(), 2u);
+  for (size_t i = 0; i < 160; ++i) {
+    const double expected = trapezoid(double(i % 40) + 0.5 - 20, 6);
+    EXPECT_NEAR(double(decoded.coverage["bar"][i]), expected, 0.02) << i;
+    EXPECT_NEAR(double(decoded.coverage["wall"][i]), 1 - expected, 0.02) << i;
   }
 }
 

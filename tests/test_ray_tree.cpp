@@ -3,9 +3,11 @@
 
 #include <cstring>
 #include <random>
+#include <set>
 
 #include "inspect/trace_pixel.h"
 #include "tests/loaded_subject.h"
+#include "tests/moving_scene.h"
 
 namespace alhazen {
 namespace {
@@ -48,6 +50,46 @@ TEST(RayTree, TreesOfAllSamplesAverageToThePixelBitForBit) {
     const Vec3d mean = sum * (1.0 / options.samples);
     EXPECT_TRUE(same_bits({float(mean.x), float(mean.y), float(mean.z)}, pixel)) << x << " " << y;
   });
+}
+
+/// A glass ball that falls before a wall, in whose light a sheet of colour passes.
+MovingScene falling_ball() {
+  MovingScene scene(3);
+  const int matte = scene.phong({{"diffuseFactor", {0.8, 0.8, 0.8}}});
+  const int glass = scene.phong({{"diffuseFactor", {0, 0, 0}}, {"transmissionFactor", {0.9, 0.8, 0.7}}});
+  (void)scene.rectangle(9, 9, json::object(), matte);
+  scene.move(scene.shape({{"sphere", {{"radius", 1}}}}, json::object(), glass), {-1, 2, 3, 1, -2, 3});
+  scene.move(scene.shape({{"box", {{"size", {2, 9, 0.1}}}}}, json::object(), glass), {-3, 0, 5, 3, 0, 5});
+  scene.move(scene.light(json::object()), {0, 3, 8, 3, 0, 8});
+  return scene;
+}
+
+TEST(RayTree, SoDoTreesWhileTheShutterIsOpen) {
+  MovingSubject subject(falling_ball());
+  subject.open_shutter(0.1, 0.6);
+  const RenderOptions options{.width = 48, .height = 40, .samples = 4};
+  const ColorImage picture = subject.picture(options);
+  std::set<float> times;
+  size_t shadows = 0;
+  subject.accelerated([&](const AcceleratedScene& accelerated) {
+    for (int i = 0; i < 160; ++i) {
+      const int x = i * 7 % 48, y = i / 4, sample = i % 4;
+      const RayTree tree = trace_pixel(subject.scene(), accelerated, subject.scene().cameras[0], options, x, y, sample);
+      ASSERT_TRUE(tree.time);
+      times.insert(*tree.time);
+      EXPECT_TRUE(same_bits(tree.pixel, picture.at(x, y))) << x << " " << y;
+      EXPECT_EQ(sum_in_order(tree), tree.radiance);
+      for (const TreeRay& ray : tree.rays)
+        for (const TreeLight& light : ray.lights) {
+          Rgb visible(1.0f);
+          for (const Occluder& occluder : light.occluders) visible *= occluder.transmittance;
+          shadows += !light.occluders.empty();
+          EXPECT_NEAR(max_component(visible), max_component(light.visible), 1e-3f) << x << " " << y;
+        }
+    }
+  });
+  EXPECT_GT(times.size(), 100u);
+  EXPECT_GT(shadows, 20u);
 }
 
 TEST(RayTree, WhatIsNotCoveredIsWhatAlphaLacks) {

@@ -1,113 +1,14 @@
 // Motion blur: pictures against analytic coverage, and against the mean of stills over the shutter's time.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
-#include <numbers>
 
-#include "accel/baking.h"
 #include "accel/posed.h"
-#include "gltf_builder.h"
-#include "loaders/record_motion.h"
-#include "renderer/render.h"
+#include "tests/moving_scene.h"
 
 namespace alhazen {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-
-// ---- Scenes that last from 0 to 1 s ----
-
-/// Nodes under animations, seen from z = 10 by an orthographic camera, `ymag` metres up and down.
-struct MovingScene : GltfBuilder {
-  std::vector<json> channels, samplers, shapes;
-  int camera;
-
-  explicit MovingScene(double ymag) {
-    add("cameras",
-        {{"type", "orthographic"}, {"orthographic", {{"xmag", ymag}, {"ymag", ymag}, {"znear", 0.1}, {"zfar", 99}}}});
-    camera = add("nodes", {{"camera", 0}, {"translation", {0, 0, 10}}});
-    add("materials", {{"extensions", {{"KHR_materials_unlit", json::object()}}}});
-    root["extensionsUsed"] = {"KHR_materials_unlit", "ALHAZEN_shapes", "ALHAZEN_materials_phong",
-                              "KHR_lights_punctual"};
-  }
-
-  int shape(json kind, json node = json::object(), int material = 0) {
-    shapes.push_back(std::move(kind));
-    node["extensions"]["ALHAZEN_shapes"] = {{"shape", shapes.size() - 1}, {"material", material}};
-    return add("nodes", std::move(node));
-  }
-  /// A rectangle in z = 0 about the origin; returns its node.
-  int rectangle(float width, float height, json primitive = json::object(), int material = 0) {
-    const float x = width / 2, y = height / 2;
-    primitive["attributes"]["POSITION"] = vec3({-x, -y, 0, x, -y, 0, x, y, 0, -x, y, 0});
-    primitive["indices"] = index({0, 1, 2, 0, 2, 3}), primitive["material"] = material;
-    (void)mesh(std::move(primitive));
-    return int(root["nodes"].size()) - 1;
-  }
-  /// Linear between values at even times from 0 to 1 s.
-  void animate(int node, const std::string& path, const std::vector<float>& values, size_t components) {
-    const size_t keys = values.size() / components;
-    std::vector<float> times;
-    for (size_t k = 0; k < keys; ++k) times.push_back(float(k) / float(keys - 1));
-    const int input = accessor(times, "SCALAR", 5126, keys);
-    const int output = path == "weights" ? accessor(values, "SCALAR", 5126, values.size())
-                                         : accessor(values, components == 3 ? "VEC3" : "VEC4", 5126, keys);
-    samplers.push_back({{"input", input}, {"output", output}});
-    channels.push_back({{"sampler", samplers.size() - 1}, {"target", {{"node", node}, {"path", path}}}});
-  }
-  void move(int node, const std::vector<float>& translations) { animate(node, "translation", translations, 3); }
-  /// About z, by less than half a turn from key to key.
-  void turn(int node, const std::vector<double>& degrees) {
-    std::vector<float> quaternions;
-    for (const double d : degrees)
-      for (const double q : {0.0, 0.0, std::sin(d * kPi / 360), std::cos(d * kPi / 360)})
-        quaternions.push_back(float(q));
-    animate(node, "rotation", quaternions, 4);
-  }
-  int phong(json factors) {
-    return add("materials", {{"extensions", {{"ALHAZEN_materials_phong", std::move(factors)}}}});
-  }
-  int light(json node) {
-    root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 20}}};
-    node["extensions"]["KHR_lights_punctual"]["light"] = 0;
-    return add("nodes", std::move(node));
-  }
-
-  [[nodiscard]] std::string text() const {
-    json all = document();
-    if (!shapes.empty()) all["extensions"]["ALHAZEN_shapes"]["shapes"] = shapes;
-    if (!channels.empty()) all["animations"] = {{{"channels", channels}, {"samplers", samplers}}};
-    return all.dump();
-  }
-};
-
-/// A scene read once, as the program stages it.
-struct Stage {
-  TemporaryFolder folder;
-  GltfFile file;
-  LoadedScene loaded;
-
-  explicit Stage(const MovingScene& scene)
-      : file(folder.write("scene.gltf", scene.text()), [](const std::string& w) { ADD_FAILURE() << w; }, {},
-             {.animation = {}, .time = 0.0}),
-        loaded(file.load(0)) {
-    bake_single_instances(loaded.scene.geometry, file.moving_meshes());
-  }
-  Scene& scene() { return loaded.scene; }
-
-  ColorImage picture(const RenderOptions& options) {
-    std::vector<Opacity> opacity;
-    const SurfaceFilter filter = surface_filter(scene(), opacity);
-    const AcceleratedScene accelerated(scene().geometry, filter);
-    RenderControl control;
-    return render(scene(), accelerated, scene().cameras[0], options, control).color;
-  }
-  ColorImage blurred(double open, double shutter, const RenderOptions& options) {
-    file.move(scene(), open);
-    record_motion(file, scene(), open, shutter);
-    return picture(options);
-  }
-};
 
 RenderOptions size(int width, int height, int samples) {
   RenderOptions options;
@@ -117,20 +18,8 @@ RenderOptions size(int width, int height, int samples) {
 
 // ---- Analytic coverage ----
 
-/// The share of the time that x is covered by what is `width` wide and goes from -10 to 10, a trapezoid, under the
-/// pixel's filter.
-double trapezoid(double pixel_x, double width) {
-  double sum = 0, weights = 0;
-  for (int i = -199; i < 200; ++i) {
-    const double offset = i / 200.0, x = pixel_x + offset, weight = 1 - std::abs(offset);
-    const double covered = std::min(x + width / 2, 10.0) - std::max(x - width / 2, -10.0);
-    sum += weight * std::max(0.0, covered) / 20, weights += weight;
-  }
-  return sum / weights;
-}
-
 void expect_trapezoid(const MovingScene& scene, double width) {
-  Stage stage(scene);
+  MovingSubject stage(scene);
   const ColorImage picture = stage.blurred(0, 1, size(40, 4, 256));
   for (const auto& track : stage.scene().geometry.motion.places) EXPECT_TRUE(track.empty() || track.size() == 2);
   for (int y = 0; y < 4; ++y)
@@ -164,7 +53,7 @@ TEST(Shutter, SoDoesAStandingRectangleBeforeAMovingCamera) {
   MovingScene scene(2);
   (void)scene.rectangle(6, 20);
   scene.move(scene.camera, {10, 0, 10, -10, 0, 10});
-  Stage stage(scene);
+  MovingSubject stage(scene);
   const ColorImage picture = stage.blurred(0, 1, size(40, 4, 256));
   for (int x = 0; x < 40; ++x) EXPECT_NEAR(double(*picture.at(x, 2)), trapezoid(x + 0.5 - 20, 6), 0.02) << x;
 }
@@ -172,7 +61,7 @@ TEST(Shutter, SoDoesAStandingRectangleBeforeAMovingCamera) {
 // ---- Against stills ----
 
 /// The mean of stills in the middles of even parts of the shutter's time.
-std::vector<double> mean_of_stills(Stage& stage, double open, double shutter, int stills,
+std::vector<double> mean_of_stills(MovingSubject& stage, double open, double shutter, int stills,
                                    const RenderOptions& options) {
   std::vector<double> mean(size_t(options.width) * size_t(options.height) * 4);
   for (int k = 0; k < stills; ++k) {
@@ -184,7 +73,7 @@ std::vector<double> mean_of_stills(Stage& stage, double open, double shutter, in
 }
 
 void expect_mean_of_stills(const MovingScene& scene) {
-  Stage stage(scene);
+  MovingSubject stage(scene);
   const ColorImage picture = stage.blurred(0.1, 0.7, size(32, 24, 512));
   const std::vector<double> expected = mean_of_stills(stage, 0.1, 0.7, 96, size(32, 24, 16));
   double sum = 0, largest = 0, blurred = 0;
@@ -222,8 +111,8 @@ TEST(Shutter, AMorphingTriangleUnderATurningNodeToo) {
 TEST(Shutter, ASphereSeenInAMirrorToo) {
   MovingScene scene(3);
   const int mirror = scene.phong({{"diffuseFactor", {0, 0, 0}}, {"reflectionFactor", {0.8, 0.8, 0.8}}});
-  scene.shape({{"box", {{"size", {4, 4, 0.2}}}}}, {{"rotation", {0, std::sin(kPi / 12), 0, std::cos(kPi / 12)}}},
-              mirror);
+  scene.shape({{"box", {{"size", {4, 4, 0.2}}}}},
+              {{"rotation", {0, std::sin(std::numbers::pi / 12), 0, std::cos(std::numbers::pi / 12)}}}, mirror);
   const int sphere = scene.shape({{"sphere", {{"radius", 0.8}}}});
   scene.move(sphere, {4, -2, 3, 4, 2, 3});
   scene.move(scene.shape({{"sphere", {{"radius", 0.3}}}}), {-2, 2, 1, 2, 1, 1, -2, -2, 1});
@@ -253,7 +142,7 @@ TEST(Shutter, WhatIsRecordedKeepsToItsPlaceBetweenThePoses) {
   scene.turn(scene.rectangle(5, 1), {0, 170, 340});
   const int shape = scene.shape({{"sphere", {{"radius", 1}}}});
   scene.move(shape, {0, 0, 0, 5, 0, 0, 5, 5, 0, 0, 5, 0, 0, 0, 0});
-  Stage stage(scene);
+  MovingSubject stage(scene);
   record_motion(stage.file, stage.scene(), 0, 1);
   const Geometry recorded = [&] {
     Geometry g;
@@ -278,7 +167,7 @@ TEST(Shutter, WhatStandsStillHasNoTrack) {
   const int moves = scene.rectangle(1, 1);
   (void)scene.rectangle(2, 2), (void)scene.shape({{"sphere", {{"radius", 1}}}});
   scene.move(moves, {0, 0, 0, 1, 0, 0});
-  Stage stage(scene);
+  MovingSubject stage(scene);
   record_motion(stage.file, stage.scene(), 0, 1);
   const Motion& motion = stage.scene().geometry.motion;
   ASSERT_EQ(motion.places.size(), 3u);
@@ -324,7 +213,7 @@ MovingScene varied_scene() {
 }
 
 void expect_frames_as_built_anew(bool watertight, double shutter) {
-  Stage stage(varied_scene());
+  MovingSubject stage(varied_scene());
   const MovingParts moving{stage.file.moving_meshes(), stage.file.deforming_meshes(), stage.file.moving_nodes()};
   const BuildOptions options{.watertight = watertight, .moving = moving};
   std::vector<Opacity> opacity, opacity_again;
@@ -355,7 +244,7 @@ TEST(Frames, KeepWhatStandsStillAndLookAsIfBuiltAnew) {
 TEST(Frames, DoSoWithMotionBlurToo) { expect_frames_as_built_anew(false, 0.2); }
 
 TEST(Frames, AreBuiltAnewWhereObjectsOrOpacitiesAreOthers) {
-  Stage stage(varied_scene());
+  MovingSubject stage(varied_scene());
   const MovingParts moving{stage.file.moving_meshes(), stage.file.deforming_meshes(), stage.file.moving_nodes()};
   std::vector<Opacity> opacity;
   Scene& scene = stage.scene();
@@ -375,7 +264,7 @@ TEST(Shutter, SameBitsForAnyThreadsAndTiles) {
   scene.turn(scene.rectangle(5, 1, json::object(), mirror), {0, 150, 300});
   scene.move(scene.shape({{"sphere", {{"radius", 1}}}}, json::object(), mirror), {-2, 0, 1, 2, 1, 1});
   (void)scene.light({{"translation", {0, 3, 5}}});
-  Stage stage(scene);
+  MovingSubject stage(scene);
   for (const int samples : {1, 5}) {
     RenderOptions options = size(100, 70, samples);
     options.threads = 1, options.tile_size = 32;
