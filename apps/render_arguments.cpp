@@ -199,7 +199,7 @@ void check_layers(const RenderArguments& arguments) {
   if (layers == 0) return;
   if (arguments.options.integrator == Integrator::signature) throw UsageError("--aov: a signature has no layers");
   const Layer first = arguments.options.layers[0];
-  const bool several = layers > 1 || first == Layer::lights || first >= Layer::crypto_node;
+  const bool several = layers > 1 || first == Layer::lights;
   if (!exr && (several || image_format(arguments.output).linear))
     throw UsageError("--aov: '" + arguments.output +
                      "' cannot hold layers; .exr can, and .png and the like show one alone");

@@ -20,6 +20,7 @@
 #include "apps/render_arguments.h"
 #include "core/error.h"
 #include "inspect/layer_picture.h"
+#include "inspect/matte_picture.h"
 #include "loaders/gltf_file.h"
 #include "loaders/layer_file.h"
 #include "renderer/framing.h"
@@ -72,14 +73,19 @@ void mention_clipping(const ColorImage& image, const RenderArguments& arguments)
                100 * clipped.share, double(arguments.exposure + clipped.stops));
 }
 
+/// The layer that is shown instead of the picture; only that of mattes has several images.
+ColorImage one_layer_picture(const RenderResult& result) {
+  const int width = result.color.width, height = result.color.height;
+  return result.layers.size() > 1 ? matte_picture(result.layers, width, height)
+                                  : layer_picture(result.layers[0], width, height);
+}
+
 void write(const RenderArguments& arguments, RenderResult& result, double render_seconds) {
   const Metadata metadata = picture_metadata(arguments, g_control, result.complete, render_seconds);
   if (arguments.options.integrator == Integrator::signature)
     return write_image(arguments.output, result.ids, arguments.encoding, metadata);
   const bool as_picture = !result.layers.empty() && !image_format(arguments.output).linear;
-  if (as_picture)
-    return write_image(arguments.output, layer_picture(result.layers[0], result.color.width, result.color.height),
-                       arguments.encoding, metadata);
+  if (as_picture) return write_image(arguments.output, one_layer_picture(result), arguments.encoding, metadata);
   expose(result.color, arguments.exposure);
   if (!arguments.ocio.config.empty())
     DisplayTransform(arguments.ocio).apply(result.color);

@@ -37,12 +37,6 @@ std::string hex_color(uint32_t node) {
 
 double share(uint64_t pixels, const IdImage& ids) { return double(pixels) / (double(ids.width) * double(ids.height)); }
 
-std::string percent(double share) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.2f %%", 100 * share);
-  return text;
-}
-
 Json objects_json(const Scene& scene, const IdImage& ids) {
   Json objects = Json::array();
   for (const auto& [node, pixels] : seen_nodes(ids))
@@ -71,7 +65,7 @@ std::string report_text(const SignatureArguments& arguments, const Scene& scene,
   for (const auto& [node, pixels] : seen_nodes(ids)) {
     char numbers[64];
     std::snprintf(numbers, sizeof numbers, "%s  %10llu  %8s  ", hex_color(node).c_str(),
-                  static_cast<unsigned long long>(pixels), percent(share(pixels, ids)).c_str());
+                  static_cast<unsigned long long>(pixels), share_text(share(pixels, ids)).c_str());
     text += numbers + node_label(scene, node) + "\n";
   }
   if (!diff) return text;
@@ -83,9 +77,7 @@ std::string report_text(const SignatureArguments& arguments, const Scene& scene,
 std::vector<LegendRow> legend_rows(const Scene& scene, const IdImage& ids) {
   std::vector<LegendRow> rows;
   for (const auto& [node, pixels] : seen_nodes(ids)) {
-    const auto c = node_color(node);
-    const auto linear = [&](size_t i) { return linear_from_srgb(float(c[i]) / 255); };
-    rows.push_back({{linear(0), linear(1), linear(2)}, node_label(scene, node), percent(share(pixels, ids))});
+    rows.push_back({linear_node_color(node), node_label(scene, node), share_text(share(pixels, ids))});
   }
   return rows;
 }

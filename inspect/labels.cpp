@@ -36,4 +36,10 @@ std::string object_label(const Geometry& geometry, uint32_t object) {
   return name.empty() ? "mesh " + std::to_string(mesh) : "mesh " + name;
 }
 
+std::string share_text(double share) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%.2f %%", 100 * share);
+  return text;
+}
+
 }  // namespace alhazen

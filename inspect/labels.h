@@ -19,4 +19,7 @@ namespace alhazen {
 /// What an object of the geometry is made of: "mesh ring", "mesh 3", "sphere".
 [[nodiscard]] std::string object_label(const Geometry& geometry, uint32_t object);
 
+/// "12.3 %" of 0.123.
+[[nodiscard]] std::string share_text(double share);
+
 }  // namespace alhazen

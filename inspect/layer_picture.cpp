@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "inspect/legend.h"
+#include "inspect/signature.h"
 #include "inspect/tree_words.h"
-#include "loaders/image_file.h"
 #include "materials/texture.h"
 
 namespace alhazen {
@@ -63,10 +63,7 @@ ColorImage heat_picture(const LayerImage& layer, int width, int height) {
 }
 
 ColorImage id_picture(const LayerImage& layer, int width, int height) {
-  return picture_of(width, height, [&](size_t i) {
-    const auto c = node_color(layer.ids[i]);
-    return from_srgb({float(c[0]) / 255, float(c[1]) / 255, float(c[2]) / 255});
-  });
+  return picture_of(width, height, [&](size_t i) { return linear_node_color(layer.ids[i]); });
 }
 
 ColorImage range_picture(const LayerImage& layer, int width, int height) {

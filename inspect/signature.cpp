@@ -13,12 +13,6 @@ namespace {
 constexpr Rgb kOtherNode{1, 0.02f, 0.02f}, kOtherDetail{1, 0.75f, 0};
 constexpr float kFaded = 0.15f;
 
-Rgb linear_node_color(uint32_t node) {
-  const auto bytes = node_color(node);
-  const auto linear = [&](size_t c) { return linear_from_srgb(float(bytes[c]) / 255); };
-  return {linear(0), linear(1), linear(2)};
-}
-
 void set(ColorImage& picture, size_t pixel, const Rgb& c) {
   float* out = &picture.pixels[4 * pixel];
   out[0] = c.r, out[1] = c.g, out[2] = c.b, out[3] = 1;
@@ -33,6 +27,12 @@ ColorImage blank(const IdImage& ids) {
 size_t pixel_count(const IdImage& ids) { return ids.pixels.size() / 3; }
 
 }  // namespace
+
+Rgb linear_node_color(uint32_t node) noexcept {
+  const auto bytes = node_color(node);
+  const auto linear = [&](size_t c) { return linear_from_srgb(float(bytes[c]) / 255); };
+  return {linear(0), linear(1), linear(2)};
+}
 
 std::vector<SeenNode> seen_nodes(const IdImage& ids) {
   std::map<uint32_t, uint64_t> counts;  // kNone is the largest

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/vec.h"
 
 namespace alhazen {
 
@@ -26,6 +27,9 @@ struct SignatureDiff {
   [[nodiscard]] bool empty() const { return nodes == 0 && details == 0; }
 };
 [[nodiscard]] SignatureDiff difference(const IdImage& ids, const IdImage& other);
+
+/// `node_color`, linear.
+[[nodiscard]] Rgb linear_node_color(uint32_t node) noexcept;
 
 /// As `write_image` shows it in 8 bits: R, G, B, A, linear, a colour for each node.
 [[nodiscard]] ColorImage node_picture(const IdImage& ids);

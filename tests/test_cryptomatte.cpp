@@ -4,11 +4,14 @@
 #include <OpenImageIO/imageio.h>
 #include <unistd.h>
 
+#include <array>
 #include <bit>
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "inspect/matte_picture.h"
 #include "loaders/layer_file.h"
 #include "renderer/cryptomatte.h"
 #include "tests/loaded_subject.h"
@@ -106,6 +109,27 @@ TEST(Cryptomatte, EachObjectsMatteIsItsShareOfTheSignature) {
       const uint32_t node = ids.pixels[3 * i];
       ASSERT_EQ(coverage[i], node != kNone && subject.scene.node_names[node] == name ? 1.0f : 0.0f) << name << " " << i;
     }
+}
+
+TEST(Cryptomatte, ItsPictureTellsApartWhatTheSignatureTellsApart) {
+  const Subject subject(ALHAZEN_SHOWCASE, 1.5);
+  RenderOptions options{.width = 90, .height = 60, .layers = {Layer::crypto_node}};
+  const std::vector<LayerImage> layers = subject.result(options).layers;
+  const ColorImage picture = matte_picture(layers, 90, 60);
+  options.layers.clear(), options.integrator = Integrator::signature;
+  const IdImage ids = subject.result(options).ids;
+  std::map<uint32_t, std::array<float, 3>> color_of_node;
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 90; ++x) {
+      const float* c = picture.at(x, y);
+      const auto [color, fresh] =
+          color_of_node.try_emplace(ids.pixels[3 * (size_t(y) * 90 + size_t(x))], std::array{c[0], c[1], c[2]});
+      EXPECT_EQ(color->second, (std::array{c[0], c[1], c[2]})) << x << " " << y;
+    }
+  std::set<std::array<float, 3>> colors;
+  for (const auto& [node, color] : color_of_node) colors.insert(color);
+  EXPECT_EQ(colors.size(), color_of_node.size());
+  EXPECT_EQ(colors.size(), 6u);  // five nodes and the background
 }
 
 TEST(Cryptomatte, MattesAddUpToAlpha) {
