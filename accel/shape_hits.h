@@ -57,8 +57,9 @@ inline DoubleLanes rounded_to_float(const DoubleLanes& x) {
 /// Whether a parameter, rounded to float, may come to lie in [t_min, t_max]: it need not be in there itself.
 template <class T>
 MaskOf<T> may_round_into(const T& t, const T& error, const T& t_min, const T& t_max) {
-  const double half = 0x1p-24;  // half the distance of floats, relative
-  return !(t + error < t_min - absolute(t_min) * half) && !(t - error > t_max + absolute(t_max) * half);
+  // Half the distance of floats, relative, and that of subnormal ones.
+  const auto half_step = [](const T& x) { return absolute(x) * 0x1p-24 + 0x1p-150; };
+  return !(t + error < t_min - half_step(t_min)) && !(t - error > t_max + half_step(t_max));
 }
 
 template <class T>
