@@ -7,6 +7,7 @@
 
 #include "accel/accelerated_scene.h"
 #include "apps/bench_command.h"
+#include "apps/brdf_command.h"
 #include "apps/crosscheck_command.h"
 #include "apps/help_formatter.h"
 #include "apps/info_command.h"
@@ -24,8 +25,8 @@ namespace alhazen {
 namespace {
 
 constexpr Command (*kCommands[])(CLI::App& program) = {
-    add_render_command, add_info_command,       add_signature_command, add_tree_command,    add_sheet_command,
-    add_bench_command,  add_crosscheck_command, add_make_command,      add_convert_command,
+    add_render_command, add_info_command,  add_signature_command,  add_tree_command, add_brdf_command,
+    add_sheet_command,  add_bench_command, add_crosscheck_command, add_make_command, add_convert_command,
 };
 
 std::string version() {

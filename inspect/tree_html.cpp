@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "inspect/base64.h"
 #include "inspect/tree_json.h"
 #include "inspect/tree_svg.h"
 #include "inspect/tree_text.h"
@@ -62,17 +63,6 @@ document.querySelectorAll('.ray').forEach(g => g.addEventListener('mouseenter', 
 const first = document.querySelector('.ray');
 if (first) show(first);
 )";
-
-std::string base64(const std::vector<uint8_t>& bytes) {
-  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < bytes.size() ? bytes[i + k] : 0u);
-    for (size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
 
 /// Without "<", which could end or change the script element that it stands in.
 std::string in_script(const std::string& json) {

@@ -4,6 +4,11 @@
 #include <OpenImageIO/imagebufalgo.h>
 
 namespace alhazen {
+namespace {
+
+constexpr const char* kFonts[] = {"DejaVuSans", "LiberationSans-Regular", "NotoSans-Regular", ""};
+
+}  // namespace
 
 bool draw_text(ColorImage& image, int x, int y, const std::string& text, int height, const Rgb& color) {
   const int channels = int(image.channels.size());
@@ -11,10 +16,16 @@ bool draw_text(ColorImage& image, int x, int y, const std::string& text, int hei
                         image.pixels.data());
   const float ink[4] = {color.r, color.g, color.b, 1};
   const OIIO::cspan<float> used(ink, channels);
-  for (const char* font : {"DejaVuSans", "LiberationSans-Regular", "NotoSans-Regular", ""})
+  for (const char* font : kFonts)
     if (OIIO::ImageBufAlgo::render_text(pixels, x, y, text, height, font, used)) return true;
   (void)pixels.geterror();
   return false;
+}
+
+int text_width(const std::string& text, int height) {
+  for (const char* font : kFonts)
+    if (const OIIO::ROI size = OIIO::ImageBufAlgo::text_size(text, height, font); size.defined()) return size.xend;
+  return 0;
 }
 
 }  // namespace alhazen

@@ -12,4 +12,7 @@ namespace alhazen {
 /// nothing is drawn, where the machine has no font for it.
 bool draw_text(ColorImage& image, int x, int y, const std::string& text, int height, const Rgb& color);
 
+/// How far that line would reach from its left end, in pixels; 0 where the machine has no font.
+[[nodiscard]] int text_width(const std::string& text, int height);
+
 }  // namespace alhazen

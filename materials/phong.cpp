@@ -26,4 +26,9 @@ Rgb reflected_light(const PhongBsdf& bsdf, const Vec3f& n, const Vec3f& s, const
   return bsdf.diffuse * ns + (rb > 0 ? bsdf.specular * std::pow(std::min(rb, 1.0f), bsdf.shininess) : Rgb{});
 }
 
+PhongRays ray_weights(const PhongBsdf& bsdf, float fresnel, bool passes) noexcept {
+  if (bsdf.fresnel) return {bsdf.reflection * fresnel, bsdf.transmission * (1 - fresnel)};
+  return passes ? PhongRays{bsdf.reflection, bsdf.transmission} : PhongRays{bsdf.reflection + bsdf.transmission, {}};
+}
+
 }  // namespace alhazen

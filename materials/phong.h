@@ -21,4 +21,12 @@ struct PhongBsdf {
 /// n: unit normal turned towards b; s: unit, to the light; b: unit, back along the ray.
 [[nodiscard]] Rgb reflected_light(const PhongBsdf& bsdf, const Vec3f& n, const Vec3f& s, const Vec3f& b) noexcept;
 
+/// What the mirror and the refracted ray weigh: reflection and transmission, times the exact F and 1 - F where the
+/// material asks for them. `fresnel`: F, 1 past the critical angle; `passes`: whether there is a refracted ray, else
+/// its share is mirrored, too.
+struct PhongRays {
+  Rgb mirrored, refracted;
+};
+[[nodiscard]] PhongRays ray_weights(const PhongBsdf& bsdf, float fresnel, bool passes) noexcept;
+
 }  // namespace alhazen

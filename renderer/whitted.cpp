@@ -215,22 +215,17 @@ class Whitted {
     };
     add_lights(s, bsdf, reflected);
 
-    Rgb mirror = bsdf.reflection, through = bsdf.transmission;
     const bool body = bounds_body(s.material);
     const float eta = body ? s.boundary.ior_before.g / s.boundary.ior_after.g : s.enters ? 1 / bsdf.ior : bsdf.ior;
     Vec3f refracted;
-    const bool passes = max_component(through) > 0 && refract(s.d, s.n, eta, refracted);
+    const bool transmits = max_component(bsdf.transmission) > 0;
+    const bool passes = transmits && refract(s.d, s.n, eta, refracted);
     const float f = bsdf.fresnel ? fresnel_dielectric(std::min(1.0f, dot(s.n, s.b)), eta) : 0.0f;
-    if (max_component(through) > 0)
-      tell([&](TraceObserver& observer) { observer.part(phong_interface(s, bsdf, f, !passes)); });
-    if (bsdf.fresnel) {
-      mirror = mirror * f;
-      through = through * (1 - f);
-    } else if (!passes) {
-      mirror += through;
-    }
-    spawn(s, reflect(s.d, s.n), s.weight * mirror, RayKind::mirror, s.path.media);
-    if (passes) spawn(s, refracted, s.weight * through, RayKind::refracted, body ? s.boundary.after : s.path.media);
+    if (transmits) tell([&](TraceObserver& observer) { observer.part(phong_interface(s, bsdf, f, !passes)); });
+    const PhongRays rays = ray_weights(bsdf, f, passes);
+    spawn(s, reflect(s.d, s.n), s.weight * rays.mirrored, RayKind::mirror, s.path.media);
+    if (passes)
+      spawn(s, refracted, s.weight * rays.refracted, RayKind::refracted, body ? s.boundary.after : s.path.media);
   }
 
   static Interface phong_interface(const Shading& s, const PhongBsdf& bsdf, float fresnel, bool total) {

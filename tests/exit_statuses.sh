@@ -32,6 +32,19 @@ expect 3 crosscheck "$work/truncated.gltf"
 expect 3 crosscheck "$work/absent.gltf"
 expect 4 crosscheck "$scene" --map "$work/absent/map.png"
 expect 4 crosscheck "$scene" --map "$work/map.unheard"
+expect 0 brdf "$scene" --material copper
+expect 0 brdf --model phong -o "$work/lobe.svg"
+expect 0 brdf --model lambert -o "$work/lobe.csv" --check
+expect 5 brdf --model phong --check
+expect 2 brdf "$scene" --material coper
+expect 2 brdf "$scene"
+expect 2 brdf --model phong --roughness 0.5
+expect 2 brdf --model phonk
+expect 2 brdf --model lambert --incident 90
+expect 2 brdf
+expect 3 brdf "$work/absent.gltf" --material 0
+expect 4 brdf --model lambert -o "$work/lobe.unheard"
+expect 4 brdf --model lambert -o "$work/absent/lobe.svg"
 expect 2 render "$scene" --no-such-option
 expect 2 render "$scene" -o "$work/a.exr" --camera nobody
 expect 2 render "$scene" -o "$work/a.exr" --integrator whited
