@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "accel/posed.h"
-#include "accel/traversal_bounds.h"
+#include "accel/user_geometry.h"
 
 namespace alhazen {
 namespace {
@@ -14,7 +14,7 @@ const InstanceGroup& group_of(const void* data) { return *static_cast<const Inst
 
 /// A box around the instance, larger by what float traversal of it may err. Linear between two poses, for the mesh's
 /// own box holds it at all times.
-void write_bounds(const RTCBoundsFunctionArguments* args) {
+void bound(const RTCBoundsFunctionArguments* args) {
   const InstanceGroup& group = group_of(args->geometryUserPtr);
   RTCBounds box;
   rtcGetSceneBounds(group.mesh, &box);
@@ -23,8 +23,7 @@ void write_bounds(const RTCBoundsFunctionArguments* args) {
   const Bounds3d world = transform_bounds(m, object);
   const Vec3d reach = max(abs(object.lower), abs(object.upper));
   const Vec3d margin = (abs(m.x) * reach.x + abs(m.y) * reach.y + abs(m.z) * reach.z + abs(m.origin)) * 0x1p-20;
-  const Bounds3f b = traversal_bounds({world.lower - margin, world.upper + margin});
-  *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
+  write_bounds(args, {world.lower - margin, world.upper + margin});
 }
 
 bool within_reach(const Vec3f& v) { return max_component(abs(v)) < embree::kReach; }
@@ -171,15 +170,12 @@ uint32_t group_size(const Geometry& geometry, uint32_t object) {
 }
 
 RTCGeometry new_instance_geometry(RTCDevice device, const InstanceGroup& group) {
-  RTCGeometry g = embree::new_geometry(device, RTC_GEOMETRY_TYPE_USER);
-  if (group.places) rtcSetGeometryTimeStepCount(g, unsigned(group.places->size()));
-  rtcSetGeometryUserPrimitiveCount(g, group.count);
-  rtcSetGeometryUserData(g, const_cast<InstanceGroup*>(&group));
-  rtcSetGeometryBoundsFunction(g, write_bounds, nullptr);
-  rtcSetGeometryIntersectFunction(g, intersect);
-  rtcSetGeometryOccludedFunction(g, occlude);
-  rtcCommitGeometry(g);
-  return g;
+  return new_user_geometry(device, {.primitives = group.count,
+                                    .time_steps = group.places ? group.places->size() : 1,
+                                    .data = &group,
+                                    .bounds = bound,
+                                    .intersect = intersect,
+                                    .occluded = occlude});
 }
 
 }  // namespace alhazen

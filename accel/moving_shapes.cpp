@@ -6,6 +6,7 @@
 #include "accel/posed.h"
 #include "accel/shape_bounds.h"
 #include "accel/shape_hits.h"
+#include "accel/user_geometry.h"
 #include "accel/wave_query.h"
 
 namespace alhazen {
@@ -18,10 +19,9 @@ Bounds3d bounds_at(const MovingShapes::Member& member, size_t pose) {
 }
 
 /// The image of a box under a map that is linear in time lies within what is linear between its boxes at the poses.
-void write_bounds(const RTCBoundsFunctionArguments* args) {
+void bound(const RTCBoundsFunctionArguments* args) {
   const MovingShapes& shapes = shapes_of(args->geometryUserPtr);
-  const Bounds3f b = traversal_bounds(bounds_at(shapes.members[args->primID], args->timeStep));
-  *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
+  write_bounds(args, bounds_at(shapes.members[args->primID], args->timeStep));
 }
 
 /// Calls visit(member, hit, crossing) for what a lane's ray hits at its time, the nearest first, until it returns true.
@@ -96,15 +96,12 @@ std::vector<std::unique_ptr<MovingShapes>> moving_shapes(const Geometry& geometr
 }
 
 RTCGeometry new_moving_geometry(RTCDevice device, const MovingShapes& shapes) {
-  RTCGeometry g = embree::new_geometry(device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryTimeStepCount(g, unsigned(shapes.poses));
-  rtcSetGeometryUserPrimitiveCount(g, unsigned(shapes.members.size()));
-  rtcSetGeometryUserData(g, const_cast<MovingShapes*>(&shapes));
-  rtcSetGeometryBoundsFunction(g, write_bounds, nullptr);
-  rtcSetGeometryIntersectFunction(g, intersect);
-  rtcSetGeometryOccludedFunction(g, occlude);
-  rtcCommitGeometry(g);
-  return g;
+  return new_user_geometry(device, {.primitives = shapes.members.size(),
+                                    .time_steps = shapes.poses,
+                                    .data = &shapes,
+                                    .bounds = bound,
+                                    .intersect = intersect,
+                                    .occluded = occlude});
 }
 
 }  // namespace alhazen

@@ -9,6 +9,7 @@
 #include "accel/packet.h"
 #include "accel/posed.h"
 #include "accel/shape_bounds.h"
+#include "accel/user_geometry.h"
 #include "accel/wave_query.h"
 #include "core/error.h"
 #include "core/fork_join.h"
@@ -19,11 +20,10 @@ namespace {
 constexpr double kLargestCoordinate = 1.844e18;  // beyond it, Embree drops primitives without a word
 // The functions on lanes are flattened: a call for each operation on vectors would cost more than the operation.
 
-void write_bounds(const RTCBoundsFunctionArguments* args) {
+void bound(const RTCBoundsFunctionArguments* args) {
   const ShapeGroup& group = *static_cast<const ShapeGroup*>(args->geometryUserPtr);
   const PlacedShape& placed = group.members[args->primID].placed;
-  const Bounds3f b = traversal_bounds(conservative_bounds(*placed.world_from_object, object_bounds(*placed.shape)));
-  *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
+  write_bounds(args, conservative_bounds(*placed.world_from_object, object_bounds(*placed.shape)));
 }
 
 template <class Arguments>
@@ -233,14 +233,11 @@ void find_instances_again(const Geometry& geometry, ShapeGroup& group) {
 RTCGeometry new_shape_geometry(RTCDevice device, const ShapeGroup& group) {
   const Callbacks callbacks = callbacks_for(group.members.front().placed.shape->index(),
                                             std::make_index_sequence<std::variant_size_v<Shape>>());
-  RTCGeometry g = embree::new_geometry(device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(g, unsigned(group.members.size()));
-  rtcSetGeometryUserData(g, const_cast<ShapeGroup*>(&group));
-  rtcSetGeometryBoundsFunction(g, write_bounds, nullptr);
-  rtcSetGeometryIntersectFunction(g, callbacks.intersect);
-  rtcSetGeometryOccludedFunction(g, callbacks.occlude);
-  rtcCommitGeometry(g);
-  return g;
+  return new_user_geometry(device, {.primitives = group.members.size(),
+                                    .data = &group,
+                                    .bounds = bound,
+                                    .intersect = callbacks.intersect,
+                                    .occluded = callbacks.occlude});
 }
 
 }  // namespace alhazen

@@ -4,7 +4,7 @@
 #include "accel/packet.h"
 #include "accel/posed.h"
 #include "accel/shape_hits.h"
-#include "accel/traversal_bounds.h"
+#include "accel/user_geometry.h"
 #include "accel/wave_query.h"
 
 namespace alhazen {
@@ -35,7 +35,7 @@ bool has_area(const Triangle& t) {
 }
 
 /// Empty for what is never hit.
-void write_bounds(const RTCBoundsFunctionArguments* args) {
+void bound(const RTCBoundsFunctionArguments* args) {
   const auto& group = *static_cast<const TriangleGroup*>(args->geometryUserPtr);
   const auto& corner = group.part.triangles[args->primID];
   const auto& p = group.track ? (*group.track)[args->timeStep][group.part_index].positions : group.part.positions;
@@ -44,8 +44,7 @@ void write_bounds(const RTCBoundsFunctionArguments* args) {
   // Without area at one pose, a triangle may have some at another.
   if (is_finite(t.a) && is_finite(t.b) && is_finite(t.c) && (group.track || has_area(t)))
     extend(box, t.a), extend(box, t.b), extend(box, t.c);
-  const Bounds3f b = traversal_bounds(box);
-  *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
+  write_bounds(args, box);
 }
 
 const LineMap<double>& identity_map() {
@@ -154,15 +153,12 @@ void occlude(const RTCOccludedFunctionNArguments* args) {
 }  // namespace
 
 RTCGeometry new_triangle_geometry(RTCDevice device, const TriangleGroup& group) {
-  RTCGeometry g = embree::new_geometry(device, RTC_GEOMETRY_TYPE_USER);
-  if (group.track) rtcSetGeometryTimeStepCount(g, unsigned(group.track->size()));
-  rtcSetGeometryUserPrimitiveCount(g, unsigned(group.part.triangles.size()));
-  rtcSetGeometryUserData(g, const_cast<TriangleGroup*>(&group));
-  rtcSetGeometryBoundsFunction(g, write_bounds, nullptr);
-  rtcSetGeometryIntersectFunction(g, intersect);
-  rtcSetGeometryOccludedFunction(g, occlude);
-  rtcCommitGeometry(g);
-  return g;
+  return new_user_geometry(device, {.primitives = group.part.triangles.size(),
+                                    .time_steps = group.track ? group.track->size() : 1,
+                                    .data = &group,
+                                    .bounds = bound,
+                                    .intersect = intersect,
+                                    .occluded = occlude});
 }
 
 }  // namespace alhazen
