@@ -1,5 +1,8 @@
 #include "crosscheck/population.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "crosscheck/feature_point.h"
 
 namespace alhazen::crosscheck {
@@ -108,13 +111,14 @@ Rayf RayMaker::axis_ray(Random& random) const {
   return {Vec3f(p - direction * (away * random.uniform(-1, 2))), Vec3f(direction)};
 }
 
+/// Of ranges from 0 on that are more than a single number, as Embree takes them.
 Rayf RayMaker::clipped_ray(Random& random) const {
   Rayf ray = random.coin() ? uniform_ray(random) : through(near_box(1, random), in_box(1, random), random);
   const float t = moved_by_floats(hit_or_some(*judge_, ray, random), random.integer(-4, 4));
   if (random.coin())
-    ray.t_min = t;
+    ray.t_min = std::max(0.0f, t);
   else
-    ray.t_max = t;
+    ray.t_max = std::max(std::numeric_limits<float>::denorm_min(), t);
   return ray;
 }
 

@@ -64,7 +64,8 @@ Verdict verdict_of(Fault a, std::optional<Fault> b, const Judgement& truth) {
 
 bool in_domain(const Rayf& ray) {
   const auto reachable = [](const Vec3f& v) { return is_finite(v) && max_component(abs(v)) < kLargestCoordinate; };
-  return reachable(ray.origin) && reachable(ray.direction) && ray.direction != Vec3f{};
+  const bool has_range = ray.t_min >= 0 && ray.t_min != ray.t_max;
+  return reachable(ray.origin) && reachable(ray.direction) && ray.direction != Vec3f{} && has_range;
 }
 
 }  // namespace alhazen::crosscheck
