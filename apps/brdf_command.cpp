@@ -114,7 +114,7 @@ void add_drawing_options(CLI::App& command, BrdfArguments& arguments) {
       ->default_str("0,30,60,80");
   command.add_option("--azimuth", arguments.options.azimuth, "Of the plane of incidence, from the tangent")
       ->type_name("DEG")
-      ->check(CLI::Range(-360.0, 360.0).description(""))
+      ->check(within(-360, 360))
       ->capture_default_str();
   add_choice<RadialScale>(
       command, "--scale", arguments.options.scale,
@@ -122,7 +122,7 @@ void add_drawing_options(CLI::App& command, BrdfArguments& arguments) {
       "Of values in the plane of incidence");
   command.add_option("--csv-step", arguments.csv_step, "Between the rows' angles")
       ->type_name("DEG")
-      ->check(CLI::Range(0.5, 45.0).description(""))
+      ->check(within(0.5, 45))
       ->capture_default_str();
 }
 

@@ -7,7 +7,7 @@
 #include "apps/prepare_scene.h"
 #include "apps/suggestion.h"
 #include "core/error.h"
-#include "inspect/labels.h"
+#include "inspect/tree_words.h"
 #include "loaders/gltf.h"
 #include "loaders/image_decode.h"
 #include "reflectance/material_brdf.h"
@@ -28,15 +28,14 @@ bool parse_numbers(const std::string& text, size_t count, float* values) {
 }
 
 Rgb parse_reflectance(const std::string& option, const std::string& text) {
-  float v[3];
+  float v[3] = {-1, -1, -1};
   if (parse_numbers(text, 1, v))
     v[1] = v[2] = v[0];
   else if (!parse_numbers(text, 3, v))
     v[0] = -1;
-  const Rgb color{v[0], v[1], v[2]};
-  if (!(std::min(color.r, std::min(color.g, color.b)) >= 0))
+  if (std::min(v[0], std::min(v[1], v[2])) < 0)
     throw CLI::ValidationError(option, "'" + text + "' is not one number >= 0, nor R,G,B, like 0.8 or 0.9,0.6,0.4");
-  return color;
+  return {v[0], v[1], v[2]};
 }
 
 void add_settings(CLI::App& command, SubjectArguments& arguments) {
@@ -58,7 +57,7 @@ void add_settings(CLI::App& command, SubjectArguments& arguments) {
             "--" + std::string(name),
             [&arguments, &value, name](double v) { value = float(v), arguments.given.push_back(name); }, description)
         ->type_name("X")
-        ->check(CLI::Range(least, most).description(""));
+        ->check(within(least, most));
   };
   add_reflectance("diffuse", settings.diffuse, "Diffuse albedo, or base color (default 0.5)");
   add_reflectance("specular", settings.specular, "Of the highlight; of ggx, reflectance at the normal (default 0.3)");
@@ -69,16 +68,14 @@ void add_settings(CLI::App& command, SubjectArguments& arguments) {
   add_number("ior", settings.ior, 1, 10, "Index of refraction (default 1.5)");
 }
 
-std::string model_names() {
+std::vector<std::string> model_names() {
   std::vector<std::string> names;
   for (const ReflectanceModel& model : reflectance_models()) names.emplace_back(model.name);
-  return joined(names);
+  return names;
 }
 
 Subject model_named(const SubjectArguments& arguments) {
-  std::vector<std::string> names;
   for (const ReflectanceModel& model : reflectance_models()) {
-    names.emplace_back(model.name);
     if (arguments.model != model.name) continue;
     const std::vector<std::string> taken(model.settings.begin(), model.settings.end());
     for (const std::string& given : arguments.given)
@@ -87,8 +84,8 @@ Subject model_named(const SubjectArguments& arguments) {
                          joined(taken, ", --"));
     return model.subject(arguments.settings);
   }
-  throw UsageError("--model: unknown '" + arguments.model + "', expected one of " + joined(names) +
-                   did_you_mean(arguments.model, names));
+  throw UsageError("--model: unknown '" + arguments.model + "', expected one of " + joined(model_names()) +
+                   did_you_mean(arguments.model, model_names()));
 }
 
 /// Of the file's materials; the one that stands for none is not asked for by name.
@@ -125,6 +122,17 @@ void parse_uv(const std::string& text, SubjectArguments& arguments) {
 
 }  // namespace
 
+CLI::Validator within(double least, double most) {
+  return {[=](const std::string& text) {
+            char* end = nullptr;
+            const double v = std::strtod(text.c_str(), &end);
+            const bool valid = end != text.c_str() && *end == 0 && v >= least && v <= most;
+            return valid ? ""
+                         : "'" + text + "' is not a number from " + short_number(least) + " to " + short_number(most);
+          },
+          ""};
+}
+
 void add_subject_options(CLI::App& command, SubjectArguments& arguments) {
   command.add_option("SCENE", arguments.file, "glTF 2.0 file (.gltf or .glb)")->type_name("");
   command.add_option("--material", arguments.material, "Which of its materials")->type_name("INDEX|NAME");
@@ -135,7 +143,7 @@ void add_subject_options(CLI::App& command, SubjectArguments& arguments) {
       ->type_name("U,V")
       ->default_str("0.5,0.5");
   command.option_defaults()->group("Models, in place of a scene");
-  command.add_option("--model", arguments.model, "One of " + model_names())->type_name("NAME");
+  command.add_option("--model", arguments.model, "One of " + joined(model_names()))->type_name("NAME");
   add_settings(command, arguments);
 }
 

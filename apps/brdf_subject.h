@@ -10,6 +10,9 @@
 
 namespace alhazen {
 
+/// A number from `least` to `most`, both included; "not a number" is none.
+[[nodiscard]] CLI::Validator within(double least, double most);
+
 /// A file's material or a model by name.
 struct SubjectArguments {
   std::string file;      // a scene; empty: a model

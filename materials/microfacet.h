@@ -36,7 +36,7 @@ struct Alpha {
 [[nodiscard]] float charlie_albedo(float roughness, float cos_theta) noexcept;
 
 /// The share of uniform light that GGX with Schlick's Fresnel (f0, f90) reflects: f0 x scale + f90 x bias (Karis, "Real
-/// Shading in Unreal Engine 4", 2013), from a table of integrals; error below 0.01.
+/// Shading in Unreal Engine 4", 2013), from a table of integrals; error below 0.012 up to 75 degrees from the normal, 0.042 at 88.
 struct SplitSum {
   float scale = 1, bias = 0;
 };

@@ -173,7 +173,7 @@ std::array<float, 4> sampled(const ColorImage& image, double x, double y) {
   const double u = std::clamp(x - 0.5, 0.0, image.width - 1.0), v = std::clamp(y - 0.5, 0.0, image.height - 1.0);
   const int x0 = std::min(int(u), image.width - 2), y0 = std::min(int(v), image.height - 2);
   std::array<float, 4> sum{};
-  for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
+  for (const auto& [dx, dy] : {std::pair{0, 0}, std::pair{1, 0}, std::pair{0, 1}, std::pair{1, 1}}) {
     const double weight = (1 - std::abs(u - x0 - dx)) * (1 - std::abs(v - y0 - dy));
     const float *in = image.at(x0 + dx, y0 + dy), alpha = float(weight) * in[3];
     for (size_t c = 0; c < 3; ++c) sum[c] += alpha * in[c];

@@ -157,16 +157,14 @@ class Sheet {
     y_ = top + kSide + 60;
   }
 
-  /// A tick or a cross.
   void sign(bool kept) {
-    const Ink ink = kept ? kGoodInk : kBadInk;
-    const auto at = [&](double x, double y) { return Vec2d{kLeft + x, y_ + y}; };
-    if (kept)
-      return drawing_.marks.emplace_back(
-                 Outline{.points = {at(0, -5), at(4, -1), at(11, -10)}, .line = ink, .width = 2.2}),
-             void();
-    drawing_.marks.emplace_back(line(at(1, -9), at(10, 0), ink, 2.2));
-    drawing_.marks.emplace_back(line(at(1, 0), at(10, -9), ink, 2.2));
+    const auto stroke = [&](std::vector<Vec2d> points) {
+      for (Vec2d& p : points) p = p + Vec2d{kLeft, y_};
+      drawing_.marks.emplace_back(
+          Outline{.points = std::move(points), .line = kept ? kGoodInk : kBadInk, .width = 2.2});
+    };
+    if (kept) return stroke({{0, -5}, {4, -1}, {11, -10}});  // a tick, else a cross
+    stroke({{1, -9}, {10, 0}}), stroke({{1, 0}, {10, -9}});
   }
 
   void lines(double x, const std::string& text, const Ink& ink) {

@@ -34,7 +34,7 @@ std::string energy_of_beams(const Subject& subject, const BrdfCheck& check) {
 std::string energy_in_furnace(const BrdfCheck& check) {
   const Finding& most = check.most_furnace;
   const std::string times = share(most.value) + " times as bright as its surroundings";
-  return (most.value > 1.002 ? "in a white furnace it shines up to " : "in a white furnace it shows at most ") + times +
+  return (most.value > 1.002 ? "in a white furnace it shines up to " : "in a white furnace it is at most ") + times +
          " (seen at " + degrees(most.eye) + ")";
 }
 

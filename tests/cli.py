@@ -361,6 +361,39 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(self.render("a.exr", *ocio).returncode, 2)
         self.assertEqual(self.render("a.png", "--ocio", self.file("absent.ocio")).returncode, 3)
 
+    def test_brdf_writes_complete_forms_by_the_name_of_the_file(self):
+        for subject in ((SCENE, "--material", "glass"), ("--model", "ggx", "--anisotropy", "0.5")):
+            for form in ("svg", "html", "png", "csv", "txt"):
+                result = run("brdf", *subject, "-o", self.file("lobe." + form))
+                self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
+            xml.etree.ElementTree.parse(self.file("lobe.svg"))
+            with open(self.file("lobe.csv"), encoding="utf-8") as file:
+                self.assertEqual(file.readline(), "theta_i,phi_i,theta_o,phi_o,r,g,b\n")
+                self.assertEqual({len(line.split(",")) for line in file}, {7})
+            with open(self.file("lobe.png"), "rb") as file:
+                self.assertEqual(file.read(4), b"\x89PNG")
+            with open(self.file("lobe.html"), encoding="utf-8") as file:
+                self.assertEqual(file.read().count('class="angle'), 18)
+
+    def test_brdf_says_what_there_is(self):
+        for options, message in (((SCENE, "--material", "coper"), "there is no material 'coper'; the scene has 0 'tiles', 1 'glass'"),
+                                 ((SCENE, "--material", "coper"), "did you mean 'copper'?"),
+                                 ((SCENE,), "--material: which one? the scene has 0 'tiles'"),
+                                 (("--model", "fong"), "expected one of lambert, phong"),
+                                 (("--model", "lambert", "--shininess", "3"), "--shininess: lambert does not take it; it takes --diffuse"),
+                                 (("--model", "phong", "--shininess", "nan"), "'nan' is not a number from 0 to 1e+06"),
+                                 (("--model", "phong", "--diffuse", "1,2"), "is not one number >= 0, nor R,G,B"),
+                                 (("--model", "phong", "--incident", "30,90"), "angles of 0 to less than 90 degrees")):
+            result = run("brdf", *options)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(message, result.stderr)
+
+    def test_brdf_tells_physical_materials_from_others(self):
+        physical = run("brdf", "--model", "normalised-phong", "--check")
+        self.assertEqual((physical.returncode, physical.stdout.splitlines()[-1]), (0, "A physical BRDF, as far as this looks."))
+        course = run("brdf", "--model", "phong", "--specular", "0.5", "--shininess", "10", "--check")
+        self.assertEqual((course.returncode, course.stdout.splitlines()[-1]), (5, "No physical BRDF: it breaks energy, reciprocity."))
+
     def test_a_source_date_makes_the_same_bytes(self):
         for extension in ("exr", "png", "tif", "jpg", "webp", "hdr"):
             files = []
