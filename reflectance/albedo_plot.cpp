@@ -112,6 +112,22 @@ std::vector<Mark> axes(const PlotBox& box) {
   return marks;
 }
 
+/// A line for each name, in the inks of all curves that share it.
+std::vector<Mark> legend(const std::vector<Curve>& curves, const Vec2d& corner) {
+  constexpr double kSample = 24, kRow = 17;
+  std::vector<Mark> marks;
+  Vec2d at = corner;
+  for (size_t first = 0, end; first < curves.size(); first = end, at.y += kRow) {
+    for (end = first + 1; end < curves.size() && curves[end].name.empty();) ++end;
+    const Vec2d step{kSample / double(end - first), 0};
+    Vec2d from = at - Vec2d{0, 4};
+    for (size_t i = first; i < end; ++i, from = from + step)
+      marks.emplace_back(line(from, from + step, curves[i].ink, 2, curves[i].dash));
+    marks.emplace_back(Words{at + Vec2d{kSample + 8, 0}, curves[first].name, 11, kTextInk});
+  }
+  return marks;
+}
+
 }  // namespace
 
 std::vector<Mark> albedo_plot(const BrdfCheck& check, const Vec2d& corner, double width, double height) {
@@ -120,14 +136,8 @@ std::vector<Mark> albedo_plot(const BrdfCheck& check, const Vec2d& corner, doubl
   for (const Curve& curve : curves) highest = std::max(highest, most(curve.values));
   const PlotBox box{corner, width, height, std::clamp(highest * 1.05, 1.12, kHighest)};
   std::vector<Mark> marks = axes(box);
-  double y = corner.y + height + 36;
-  for (const Curve& curve : curves) {
-    std::ranges::move(curve_marks(check, curve, box), std::back_inserter(marks));
-    if (curve.name.empty()) continue;
-    marks.emplace_back(line({corner.x, y - 4}, {corner.x + 22, y - 4}, curve.ink, 2, curve.dash));
-    marks.emplace_back(Words{{corner.x + 30, y}, curve.name, 11, kTextInk});
-    y += 17;
-  }
+  for (const Curve& curve : curves) std::ranges::move(curve_marks(check, curve, box), std::back_inserter(marks));
+  std::ranges::move(legend(curves, corner + Vec2d{0, height + 36}), std::back_inserter(marks));
   return marks;
 }
 

@@ -1,5 +1,8 @@
 #include "reflectance/sheet.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <sstream>
 
 #include "inspect/layer_picture.h"
@@ -20,7 +23,7 @@ constexpr double kWidth = 1000, kLeft = 40, kRight = 960;
 constexpr double kSide = 250;  // of the square pictures
 constexpr double kLobesTop = 118, kRadius = 240;
 constexpr Vec2d kLobesCentre{kLeft + 14 + kRadius, kLobesTop + 40 + kRadius};
-constexpr double kLegendTop = kLobesCentre.y + 36, kLegendColumn = 270;
+constexpr double kLegendTop = kLobesCentre.y + 36, kLegendColumn = 285;
 constexpr double kAlbedoLeft = 640, kAlbedoHeight = 244;
 constexpr int kMapPixels = 250, kSpherePixels = 330, kLiveMapPixels = 180;
 constexpr size_t kLineLetters = 132;
@@ -93,6 +96,9 @@ class Sheet {
   }
 
  private:
+  [[nodiscard]] bool has_lobe() const {
+    return std::ranges::any_of(report_.slices, [](const LobeSlice& slice) { return peak(slice) > 0; });
+  }
   [[nodiscard]] double pictures_top() const { return kLegendTop + double((report_.slices.size() + 1) / 2) * 18 + 52; }
 
   void add(std::vector<Mark> marks) { std::ranges::move(marks, std::back_inserter(drawing_.marks)); }
@@ -111,19 +117,33 @@ class Sheet {
     for (const std::string& line : wrapped(facts, kLineLetters)) words({kLeft, y}, line, 12, kFaintInk), y += 16;
   }
 
+  /// The peak of a slice, and where the light goes on as rays, their shares.
+  [[nodiscard]] std::string facts(const LobeSlice& slice) const {
+    std::string text;
+    if (const double most = double(peak(slice)); most > 0) text = "peak " + plain_number(most) + "/sr";
+    if (!report_.subject.smooth) return text.empty() ? "nothing" : text;
+    const RayShares rays = report_.subject.smooth(float(std::cos(slice.incident * kDegree)));
+    char shares[48];
+    std::snprintf(shares, sizeof shares, "R %.2f, T %.2f", double(luminance(rays.mirrored)),
+                  double(luminance(rays.transmitted)));
+    return text + (text.empty() ? "" : ", ") + shares;
+  }
+
   void lobes() {
     heading({kLeft, kLobesTop}, "Lobes in the plane of incidence");
     words({kLeft + 248, kLobesTop}, plot_.logarithmic ? "1/sr, logarithmic" : "1/sr", 11, kFaintInk);
     add(polar_axes(plot_));
+    if (!has_lobe())
+      drawing_.marks.emplace_back(Words{plot_.at(0, kRadius / 2),
+                                        report_.subject.smooth ? "no lobe: rays alone" : "no lobe: it is black", 13,
+                                        kFaintInk, Anchor::middle});
     for (size_t i = 0; i < report_.slices.size(); ++i) {
       const LobeSlice& slice = report_.slices[i];
       drawing_.marks.emplace_back(lobe_outline(plot_, slice, curve_ink(i), 2));
       add(light_arrow(plot_, slice.incident, curve_ink(i)));
       const Vec2d at{kLeft + double(i % 2) * kLegendColumn, kLegendTop + double(i / 2) * 18};
       drawing_.marks.emplace_back(line(at - Vec2d{0, 4}, at + Vec2d{22, -4}, curve_ink(i), 3));
-      words(at + Vec2d{30, 0},
-            "light at " + angle_text(slice.incident) + ", peak " + plain_number(double(peak(slice))) + "/sr", 11,
-            kTextInk);
+      words(at + Vec2d{30, 0}, "light at " + angle_text(slice.incident) + ": " + facts(slice), 11, kTextInk);
     }
   }
 
@@ -150,10 +170,11 @@ class Sheet {
     words({kLeft + 77, top + kSide + 22}, "mirror direction", 11, kFaintInk);
     heading({lit, top - 14}, "On a ball");
     drawing_.marks.emplace_back(Inset{{lit, top}, kSide, lit_sphere(report_.subject, report_.check, kSpherePixels)});
-    words({lit, top + kSide + 22}, "a lamp, and a faint even sky", 11, kFaintInk);
+    const std::string rest = report_.subject.smooth ? ", without rays" : "";
+    words({lit, top + kSide + 22}, "a lamp, and a faint even sky" + rest, 11, kFaintInk);
     heading({furnace, top - 14}, "In a white furnace");
     drawing_.marks.emplace_back(Inset{{furnace, top}, kSide, furnace_sphere(report_.check, kSpherePixels)});
-    words({furnace, top + kSide + 22}, "brighter than the ground: gains light", 11, kFaintInk);
+    words({furnace, top + kSide + 22}, "brighter than around it: gains light" + rest, 11, kFaintInk);
     y_ = top + kSide + 60;
   }
 
