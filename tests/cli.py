@@ -304,10 +304,11 @@ class CommandLine(unittest.TestCase):
         self.assertGreater(json.loads(moved.stdout)["diff"]["nodes"], 5)
 
     def test_layers_come_with_the_picture_or_one_alone(self):
-        for name, layers in (("a.exr", "normal,lights,crypto_node"), ("b.png", "rays"), ("c.jpg", "normal")):
+        for name, layers in (("a.exr", "normal,lights,crypto_node"), ("b.png", "rays"), ("c.jpg", "normal"),
+                             ("m.png", "crypto_material")):
             self.assertEqual(self.render(name, "--aov", layers).returncode, 0)
         self.assertEqual(self.render("d.exr", "--aov", "albedo,node", "--multipart", "--half").returncode, 0)
-        for wrong in (["e.exr", "--aov", "norml"], ["e.png", "--aov", "normal,uv"], ["e.png", "--aov", "crypto_node"],
+        for wrong in (["e.exr", "--aov", "norml"], ["e.png", "--aov", "normal,uv"], ["e.png", "--aov", "crypto_node,uv"],
                       ["e.exr", "--multipart"], ["e.hdr", "--aov", "depth"], ["e.exr", "--aov", "uv", "--integrator", "signature"]):
             self.assertEqual(self.render(*wrong).returncode, 2, wrong)
 
