@@ -151,6 +151,7 @@ Command add_brdf_command(CLI::App& program) {
       "Examples:\n"
       "  alhazen brdf scene.gltf --material copper\n"
       "  alhazen brdf scene.gltf --material copper -o copper.svg --incident 10,45,70\n"
+      "  alhazen brdf gold-paint.binary -o gold-paint.html\n"
       "  alhazen brdf --model phong --diffuse 0.5 --specular 0.5 --shininess 50 --check\n"
       "  alhazen brdf --model normalised-phong --shininess 50 -o lobe.html");
   return {command, [arguments] { return run_brdf(*arguments); }};

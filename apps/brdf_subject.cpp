@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "apps/prepare_scene.h"
@@ -10,6 +11,7 @@
 #include "inspect/tree_words.h"
 #include "loaders/gltf.h"
 #include "loaders/image_decode.h"
+#include "loaders/measured_file.h"
 #include "reflectance/material_brdf.h"
 
 namespace alhazen {
@@ -114,6 +116,17 @@ Subject material_of(const SubjectArguments& arguments) {
   return material_subject(loaded.scene, material, arguments.uv);
 }
 
+bool is_measured_file(const std::string& file) {
+  const std::string extension = std::filesystem::path(file).extension().string();
+  return extension == ".binary" || extension == ".csv";
+}
+
+Subject measured_of(const SubjectArguments& arguments) {
+  if (!arguments.material.empty()) throw UsageError("--material: is one of a scene, not of a measured surface's file");
+  LoadBudget budget(arguments.limits);
+  return measured_subject(std::make_shared<MeasuredBrdf>(load_measured_brdf(arguments.file, budget)));
+}
+
 void parse_uv(const std::string& text, SubjectArguments& arguments) {
   float uv[2];
   if (!parse_numbers(text, 2, uv)) throw CLI::ValidationError("--uv", "'" + text + "' is not U,V, like 0.25,0.75");
@@ -134,7 +147,9 @@ CLI::Validator within(double least, double most) {
 }
 
 void add_subject_options(CLI::App& command, SubjectArguments& arguments) {
-  command.add_option("SCENE", arguments.file, "glTF 2.0 file (.gltf or .glb)")->type_name("");
+  command
+      .add_option("FILE", arguments.file, "A scene (.gltf or .glb), or a measured surface (MERL's .binary, or .csv)")
+      ->type_name("");
   command.add_option("--material", arguments.material, "Which of its materials")->type_name("INDEX|NAME");
   command
       .add_option_function<std::string>(
@@ -142,21 +157,22 @@ void add_subject_options(CLI::App& command, SubjectArguments& arguments) {
           "Where its textures are looked up")
       ->type_name("U,V")
       ->default_str("0.5,0.5");
-  command.option_defaults()->group("Models, in place of a scene");
+  command.option_defaults()->group("Models, in place of a file");
   command.add_option("--model", arguments.model, "One of " + joined(model_names()))->type_name("NAME");
   add_settings(command, arguments);
 }
 
 Subject subject_of(const SubjectArguments& arguments) {
   if (arguments.file.empty() == arguments.model.empty())
-    throw UsageError(arguments.file.empty() ? "expected a scene and its --material, or a --model"
-                                            : "--model: takes the place of a scene; give one of them");
+    throw UsageError(arguments.file.empty()
+                         ? "expected a scene and its --material, a measured surface's file, or a --model"
+                         : "--model: takes the place of a file; give one of them");
   if (!arguments.model.empty()) {
     if (!arguments.material.empty()) throw UsageError("--material: is one of a scene, not of a --model");
     return model_named(arguments);
   }
   if (!arguments.given.empty()) throw UsageError("--" + arguments.given.front() + ": is a setting of a --model");
-  return material_of(arguments);
+  return is_measured_file(arguments.file) ? measured_of(arguments) : material_of(arguments);
 }
 
 }  // namespace alhazen

@@ -13,9 +13,9 @@ namespace alhazen {
 /// A number from `least` to `most`, both included; "not a number" is none.
 [[nodiscard]] CLI::Validator within(double least, double most);
 
-/// A file's material or a model by name.
+/// A scene's material, a measured surface, or a model by name.
 struct SubjectArguments {
-  std::string file;      // a scene; empty: a model
+  std::string file;      // a scene, or a measured surface (.binary, .csv); empty: a model
   std::string material;  // name or index
   Vec2f uv{0.5f, 0.5f};
   LoadLimits limits;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -68,6 +69,18 @@ Json cameras_json(const Scene& scene) {
   return cameras;
 }
 
+Json measured_json(const Scene& scene) {
+  Json all = Json::array();
+  for (const MeasuredBrdf& brdf : scene.measured) {
+    const MeasuredGrid& grid = brdf.table.grid;
+    all.push_back({{"uri", brdf.name},
+                   {"entries", {grid.theta_h, grid.theta_d, grid.phi_d}},
+                   {"known", brdf.known},
+                   {"roughness", brdf.roughness}});
+  }
+  return all;
+}
+
 Json bounds_json(const Geometry& geometry) {
   const Bounds3d bounds = world_bounds(geometry);
   if (is_empty(bounds)) return nullptr;
@@ -96,6 +109,7 @@ Json info_json(const std::string& name, const WarningSink& warn, const std::shar
   info["animations"] = file.animation_names();
   info["lights"] = lights_json(loaded.scene);
   info["cameras"] = cameras_json(loaded.scene);
+  info["measured"] = measured_json(loaded.scene);
   info["bounds"] = bounds_json(loaded.scene.geometry);
   info["extensions"] = extensions_json(loaded);
   return info;
@@ -131,6 +145,13 @@ std::string camera_text(const Json& camera) {
 std::string light_text(const Json& light) {
   const std::string name = light["name"];
   return light["kind"].get<std::string>() + (name.empty() ? "" : " '" + name + "'");
+}
+
+std::string measured_text(const Json& brdf) {
+  const Json& entries = brdf["entries"];
+  return brdf["uri"].get<std::string>() + ", " + number(entries[0]) + " x " + number(entries[1]) + " x " +
+         number(entries[2]) + " entries, " + number(std::round(brdf["known"].get<double>() * 100)) +
+         " % known, highlight of roughness " + number(brdf["roughness"]);
 }
 
 /// The names, each after its index.
@@ -169,6 +190,7 @@ std::string info_text(const Json& info) {
          row("textures", number(info["textures"]) + ", of images " + number(info["images"])) +
          row("skins", number(info["skins"])) + row("animations", animations_text(info["animations"])) +
          rows("lights", info["lights"], light_text) + rows("cameras", info["cameras"], camera_text) +
+         (info["measured"].empty() ? "" : rows("measured", info["measured"], measured_text)) +
          row("bounds", bounds_text(info["bounds"])) + rows("extensions", info["extensions"], extension_text);
 }
 

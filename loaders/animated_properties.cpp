@@ -79,6 +79,7 @@ constexpr Row kRows[] = {
     {"/materials/*/extensions/KHR_materials_volume/attenuationDistance", kPositive},
     {"/materials/*/extensions/KHR_materials_volume/attenuationColor", kShares3},
     {"/materials/*/extensions/KHR_materials_dispersion/dispersion", kNotNegative},
+    {"/materials/*/extensions/ALHAZEN_materials_measured/scale", kNotNegative},
     {"/materials/*/extensions/ALHAZEN_materials_phong/ambientFactor", kColor},
     {"/materials/*/extensions/ALHAZEN_materials_phong/diffuseFactor", kColor},
     {"/materials/*/extensions/ALHAZEN_materials_phong/specularFactor", kColor},

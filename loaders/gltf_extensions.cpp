@@ -11,6 +11,7 @@ using enum Treatment;
 
 constexpr KnownExtension kKnown[] = {
     {"ALHAZEN_lights", supported, ""},
+    {"ALHAZEN_materials_measured", supported, "MERL files and tables of samples"},
     {"ALHAZEN_materials_phong", supported, ""},
     {"ALHAZEN_shapes", supported, ""},
     {"EXT_lights_image_based", supported, ""},

@@ -6,6 +6,7 @@
 #include "loaders/gltf_environment.h"
 #include "loaders/gltf_examine.h"
 #include "loaders/gltf_material.h"
+#include "loaders/gltf_measured.h"
 #include "loaders/gltf_scene.h"
 #include "loaders/gltf_shapes.h"
 #include "loaders/gltf_texture.h"
@@ -129,6 +130,7 @@ LoadedScene GltfFile::load(double seconds) {
   loaded.encoded = std::move(textures.images);
   scene.images.resize(loaded.encoded.size());
   scene.textures = std::move(textures.textures);
+  scene.measured = read_measured(impl.source, materials.measured);
   scene.materials = std::move(materials.materials);
   if (const auto shapes = impl.source.root().extension("ALHAZEN_shapes"))
     scene.geometry.shapes = read_shapes(*shapes, *impl.source.budget);

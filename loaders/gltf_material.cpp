@@ -1,6 +1,7 @@
 #include "loaders/gltf_material.h"
 
 #include <array>
+#include <map>
 
 #include "loaders/gltf_layers.h"
 
@@ -24,6 +25,10 @@ class MaterialReader {
     if (const auto phong = r.extension("ALHAZEN_materials_phong")) {
       m.model = ShadingModel::phong;
       read_phong(*phong, m.phong);
+    }
+    if (const auto measured = r.extension("ALHAZEN_materials_measured")) {
+      m.model = ShadingModel::measured;
+      m.measured = {measured_file((*measured)["uri"]), measured->get("scale", 1.0f)};
     }
     return m;
   }
@@ -115,8 +120,16 @@ class MaterialReader {
     p.priority = r.get("priority", p.priority);
   }
 
+  /// Among the files that materials name; a new one for a URI that is not there yet.
+  uint32_t measured_file(const JsonRef& uri) {
+    const auto [at, is_new] = measured_.try_emplace(uri.as<std::string>(), uint32_t(all_.measured.size()));
+    if (is_new) all_.measured.push_back(uri);
+    return at->second;
+  }
+
   const GltfSource& source_;
   GltfMaterials& all_;
+  std::map<std::string, uint32_t> measured_;  // by URI
 };
 
 }  // namespace

@@ -147,6 +147,7 @@ Check material_extensions() {
                                                               {"specularFactor", numbers(3, 0, 1)},
                                                               {"glossinessFactor", number(0, 1)},
                                                               {"specularGlossinessTexture", texture_info()}})},
+              {"ALHAZEN_materials_measured", closed_object({{"uri", text(), required}, {"scale", number(0)}})},
               {"ALHAZEN_materials_phong", phong()}});
   return object(std::move(all));
 }

@@ -27,6 +27,7 @@ bool may_transmit(const Material& material) {
     case ShadingModel::metallic_roughness:
       return material.transmission > 0;
     case ShadingModel::unlit:
+    case ShadingModel::measured:
       return false;
   }
   return false;

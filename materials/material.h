@@ -12,7 +12,7 @@
 namespace alhazen {
 
 enum class AlphaMode : uint8_t { opaque, mask, blend };
-enum class ShadingModel : uint8_t { metallic_roughness, phong, unlit };
+enum class ShadingModel : uint8_t { metallic_roughness, phong, unlit, measured };
 
 /// ALHAZEN_materials_phong: the course's model. Symbols as in docs/scene-format.md.
 struct PhongParameters {
@@ -24,6 +24,12 @@ struct PhongParameters {
   bool takes_part = false;  // in the rules of overlapping bodies: `priority` is given
   int priority = 0;
   TextureUse ambient_texture, diffuse_texture;
+};
+
+/// ALHAZEN_materials_measured.
+struct MeasuredUse {
+  uint32_t brdf = kNone;  // index into Scene::measured
+  float scale = 1;        // of the BRDF
 };
 
 // The layers and lobes of KHR_materials_*: every default is that of the extension where it is absent.
@@ -107,6 +113,7 @@ struct Material {
   Volume volume;
 
   PhongParameters phong;  // read where model is phong
+  MeasuredUse measured;   // read where model is measured
 };
 
 /// Coverage of the surface at a point: 1 for OPAQUE, 0 or 1 for MASK, else the base colour's alpha in [0, 1].

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <numbers>
+#include <utility>
 
 #include "core/error.h"
 #include "inspect/labels.h"
@@ -118,6 +119,24 @@ Subject layered_subject(const MetallicRoughnessBsdf& bsdf, float angle) {
   return subject;
 }
 
+Subject measured_subject(std::shared_ptr<const MeasuredBrdf> brdf, float scale) {
+  const MeasuredGrid& grid = brdf->table.grid;
+  Subject subject{.name = brdf->name,
+                  .model = "measured",
+                  .settings = {{"entries", std::to_string(grid.theta_h) + " x " + std::to_string(grid.theta_d) + " x " +
+                                               std::to_string(grid.phi_d)},
+                               {"known", text(double(std::round(100 * brdf->known))) + " %"}},
+                  .brdf = {},
+                  .smooth = {},
+                  .notes = {"Entries that are not known, those below the horizon too, have taken their nearest "
+                            "neighbours' values."}};
+  if (scale != 1) subject.settings.emplace_back("scale", text(double(scale)));
+  subject.brdf = [brdf = std::move(brdf), scale](const Vec3f& s, const Vec3f& b) {
+    return evaluate(brdf->table, kNormal, s, b) * scale;
+  };
+  return subject;
+}
+
 Subject material_subject(const Scene& scene, uint32_t index, Vec2f uv) {
   const Material& material = scene.materials[index];
   const TextureTable table = texture_table(scene);
@@ -127,10 +146,19 @@ Subject material_subject(const Scene& scene, uint32_t index, Vec2f uv) {
   const std::string name = material_label(scene, index);
   if (material.model == ShadingModel::unlit)
     throw UsageError("--material: '" + name + "' is unlit: it reflects nothing, whatever the light");
-  Subject subject = material.model == ShadingModel::phong
-                        ? phong_subject(phong_bsdf(material, table, inputs))
-                        : layered_subject(metallic_roughness_bsdf(material, table, inputs),
-                                          anisotropy_angle(material, table, inputs));
+  const auto subject_of_model = [&] {
+    switch (material.model) {
+      case ShadingModel::phong:
+        return phong_subject(phong_bsdf(material, table, inputs));
+      case ShadingModel::measured:
+        return measured_subject(std::make_shared<MeasuredBrdf>(scene.measured[material.measured.brdf]),
+                                material.measured.scale);
+      default:
+        return layered_subject(metallic_roughness_bsdf(material, table, inputs),
+                               anisotropy_angle(material, table, inputs));
+    }
+  };
+  Subject subject = subject_of_model();
   subject.name = name;
   note_surroundings(material, subject);
   return subject;

@@ -1,6 +1,8 @@
 // A scene's material as a BRDF: the renderer's own functions, asked for all directions.
 #pragma once
 
+#include <memory>
+
 #include "materials/metallic_roughness.h"
 #include "materials/phong.h"
 #include "reflectance/subject.h"
@@ -17,5 +19,8 @@ namespace alhazen {
 /// One model by itself, as `material_subject` shows it; `name` is left empty. `angle`: of anisotropy, in radians.
 [[nodiscard]] Subject phong_subject(const PhongBsdf& bsdf);
 [[nodiscard]] Subject layered_subject(const MetallicRoughnessBsdf& bsdf, float angle);
+
+/// A measured surface, named after its file.
+[[nodiscard]] Subject measured_subject(std::shared_ptr<const MeasuredBrdf> brdf, float scale = 1);
 
 }  // namespace alhazen

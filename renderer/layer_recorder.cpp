@@ -185,6 +185,8 @@ Rgb LayerRecorder::albedo(const ShadedHit& hit) const {
       return emission(material, table, inputs);
     case ShadingModel::phong:
       return phong_bsdf(material, table, inputs).diffuse;
+    case ShadingModel::measured:
+      return measured_albedo(measured_bsdf(scene_, material), 1).total();
     case ShadingModel::metallic_roughness:
       break;
   }

@@ -51,6 +51,7 @@ bool bounds_body(const Material& material) noexcept {
     case ShadingModel::metallic_roughness:
       return material.volume.is_body() && material.transmission > 0;
     case ShadingModel::unlit:
+    case ShadingModel::measured:
       return false;
   }
   return false;

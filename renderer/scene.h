@@ -8,6 +8,7 @@
 #include "accel/geometry.h"
 #include "core/transform.h"
 #include "materials/material.h"
+#include "materials/measured_brdf.h"
 #include "renderer/environment.h"
 
 namespace alhazen {
@@ -42,6 +43,7 @@ struct Scene {
   std::vector<Material> materials;  // the file's, then glTF's default material as the last one
   std::vector<Texture> textures;
   std::vector<TextureImage> images;
+  std::vector<MeasuredBrdf> measured;
   std::vector<Light> lights;
   std::vector<Camera> cameras;          // one for each node that carries one, in node order
   std::vector<uint32_t> camera_index;   // for each of `cameras`, its index in the file's `cameras`
@@ -52,5 +54,10 @@ struct Scene {
 };
 
 [[nodiscard]] inline TextureTable texture_table(const Scene& scene) { return {&scene.textures, &scene.images}; }
+
+/// Of a material whose model is `measured`.
+[[nodiscard]] inline MeasuredBsdf measured_bsdf(const Scene& scene, const Material& material) {
+  return {&scene.measured[material.measured.brdf], material.measured.scale};
+}
 
 }  // namespace alhazen

@@ -47,6 +47,11 @@ MetallicRoughnessBsdf without_diffuse(MetallicRoughnessBsdf bsdf) {
   return bsdf;
 }
 
+MeasuredBsdf without_diffuse(MeasuredBsdf bsdf) {
+  bsdf.highlight_only = true;
+  return bsdf;
+}
+
 /// `observed`: whether the arena's observer is told. Nothing of it is left in the code where not.
 template <bool observed>
 class Whitted {
@@ -174,6 +179,10 @@ class Whitted {
         add(path, LightTerm::emission, emitted);
         shade_phong(s, phong_bsdf(material, table_, inputs));
         break;
+      case ShadingModel::measured:
+        add(path, LightTerm::emission, emitted);
+        shade_measured(s, measured_bsdf(scene_, material));
+        break;
       case ShadingModel::metallic_roughness:
         shade_metallic_roughness(s, metallic_roughness_bsdf(material, table_, inputs, relative_ior(s)), emitted);
     }
@@ -232,6 +241,20 @@ class Whitted {
     Interface interface { s.boundary.ior_before, s.boundary.ior_after, Rgb(fresnel), bsdf.fresnel, total };
     if (!bounds_body(s.material)) (s.enters ? interface.ior_after : interface.ior_before) = Rgb(bsdf.ior);
     return interface;
+  }
+
+  /// Light without a place meets the table as it meets glTF's surfaces: a diffuse part, and a lobe about the mirror
+  /// direction, whose roughness says how much of it one mirror ray stands for.
+  void shade_measured(const Shading& s, const MeasuredBsdf& bsdf) {
+    const MeasuredAlbedo albedo = measured_albedo(bsdf, dot(s.n, s.b));
+    const float roughness = bsdf.brdf->roughness, share = mirror_share(roughness);
+    const Vec3f mirrored = reflect(s.d, s.n);
+    const Rgb ambient =
+        albedo.diffuse * ambient_light(s.n) + albedo.highlight * (1 - share) * blurred(mirrored, roughness);
+    add(s.path, LightTerm::ambient, s.weight * ambient);
+    add_lights(s, bsdf,
+               [&](const MeasuredBsdf& of, const Vec3f& to_light) { return reflected_light(of, s.n, to_light, s.b); });
+    spawn(s, above_surface(s, mirrored), s.weight * albedo.highlight * share, RayKind::mirror, s.path.media, roughness);
   }
 
   void shade_metallic_roughness(const Shading& s, const MetallicRoughnessBsdf& bsdf, const Rgb& emitted) {

@@ -35,6 +35,10 @@ expect 4 crosscheck "$scene" --map "$work/map.unheard"
 expect 0 brdf "$scene" --material copper
 expect 0 brdf --model phong -o "$work/lobe.svg"
 expect 0 brdf --model lambert -o "$work/lobe.csv" --check
+expect 0 brdf "$work/lobe.csv" --check
+expect 2 brdf "$work/lobe.csv" --material 0
+expect 3 brdf "$work/absent.csv"
+expect 3 brdf "$scene.binary"
 expect 5 brdf --model phong --check
 expect 2 brdf "$scene" --material coper
 expect 2 brdf "$scene"
