@@ -60,6 +60,12 @@ std::vector<double> parse_angles(const std::string& text) {
   }
 }
 
+FitModel parse_fit(const std::string& text) {
+  if (text == "ggx") return FitModel::ggx;
+  if (text == "phong") return FitModel::phong;
+  throw CLI::ValidationError("--fit", "unknown '" + text + "', expected ggx or phong");
+}
+
 void write_file(const std::string& file, const std::string& text) {
   PartFile part(file);
   part.write({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
@@ -102,6 +108,7 @@ int run_brdf(const BrdfArguments& arguments) {
   else
     write(form, arguments, report);
   if (arguments.check && !arguments.output.empty()) print(laws_text(report.subject, report.check));
+  if (arguments.check || !arguments.output.empty()) print(fit_text(report));
   return arguments.check && !report.check.keeps_all() ? kLawBroken : int(ExitStatus::done);
 }
 
@@ -137,6 +144,11 @@ Command add_brdf_command(CLI::App& program) {
                    "A sheet of drawings (.svg, .png), the same with light that can be moved (.html), values (.csv), or "
                    "text (.txt); by default text to standard output")
       ->type_name("FILE");
+  command
+      ->add_option_function<std::string>(
+          "--fit", [arguments](const std::string& text) { arguments->options.fit = parse_fit(text); },
+          "Also the parameters of a model, ggx or phong, that come nearest, and how near: its lobes are dashed")
+      ->type_name("MODEL");
   command->add_flag("--check", arguments->check,
                     "Say whether energy, reciprocity and positivity are kept; status 5 where they are not");
   command->option_defaults()->group("Picture");
@@ -151,7 +163,7 @@ Command add_brdf_command(CLI::App& program) {
       "Examples:\n"
       "  alhazen brdf scene.gltf --material copper\n"
       "  alhazen brdf scene.gltf --material copper -o copper.svg --incident 10,45,70\n"
-      "  alhazen brdf gold-paint.binary -o gold-paint.html\n"
+      "  alhazen brdf gold-paint.binary -o gold-paint.html --fit ggx\n"
       "  alhazen brdf --model phong --diffuse 0.5 --specular 0.5 --shininess 50 --check\n"
       "  alhazen brdf --model normalised-phong --shininess 50 -o lobe.html");
   return {command, [arguments] { return run_brdf(*arguments); }};

@@ -28,9 +28,16 @@ std::string albedo_text(const Rgb& c) {
 }  // namespace
 
 BrdfReport brdf_report(const Subject& subject, const BrdfOptions& options) {
-  BrdfReport report{subject, options, {}, check_brdf(subject, options.azimuth)};
-  for (const double incident : options.incident)
-    report.slices.push_back(lobe_slice(subject.brdf, incident, options.azimuth));
+  BrdfReport report{subject, options, {}, check_brdf(subject, options.azimuth), {}, {}};
+  const auto slices_of = [&](const Brdf& brdf) {
+    std::vector<LobeSlice> slices;
+    for (const double incident : options.incident) slices.push_back(lobe_slice(brdf, incident, options.azimuth));
+    return slices;
+  };
+  report.slices = slices_of(subject.brdf);
+  if (!options.fit) return report;
+  report.fit = fit_brdf(subject.brdf, *options.fit);
+  report.fitted = slices_of(fitted_brdf(*report.fit));
   return report;
 }
 
@@ -38,6 +45,13 @@ std::string settings_text(const Subject& subject) {
   std::string text;
   for (const auto& [name, value] : subject.settings) text += (text.empty() ? "" : ", ") + name + " " + value;
   return text;
+}
+
+std::string fit_text(const BrdfReport& report) {
+  if (!report.fit) return {};
+  const std::string& name = report.subject.name;
+  return "fitted " + fit_summary(*report.fit) + "\nas a glTF material:\n" +
+         fitted_material_json(*report.fit, (name.empty() ? report.subject.model : name) + ", fitted") + "\n";
 }
 
 std::string brdf_text(const BrdfReport& report) {
@@ -52,6 +66,7 @@ std::string brdf_text(const BrdfReport& report) {
   }
   text += "\n" + laws_text(subject, report.check);
   for (const std::string& note : subject.notes) text += "note: " + note + "\n";
+  if (report.fit) text += "\n" + fit_text(report);
   return text;
 }
 

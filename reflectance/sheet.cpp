@@ -56,6 +56,7 @@ class Sheet {
       maps_.push_back(hemisphere_map(brdf, angle, report.options.azimuth, map_pixels));
     }
     all.insert(all.end(), live_.begin(), live_.end());
+    all.insert(all.end(), report.fitted.begin(), report.fitted.end());
     plot_ = polar_plot(all, report.options.scale, kLobesCentre, kRadius);
     heat_ = heat_scale(maps_);
   }
@@ -99,7 +100,9 @@ class Sheet {
   [[nodiscard]] bool has_lobe() const {
     return std::ranges::any_of(report_.slices, [](const LobeSlice& slice) { return peak(slice) > 0; });
   }
-  [[nodiscard]] double pictures_top() const { return kLegendTop + double((report_.slices.size() + 1) / 2) * 18 + 52; }
+  [[nodiscard]] double pictures_top() const {
+    return kLegendTop + double((report_.slices.size() + report_.fit.has_value() + 1) / 2) * 18 + 52;
+  }
 
   void add(std::vector<Mark> marks) { std::ranges::move(marks, std::back_inserter(drawing_.marks)); }
   void words(const Vec2d& at, const std::string& text, double size, const Ink& ink) {
@@ -145,6 +148,21 @@ class Sheet {
       drawing_.marks.emplace_back(line(at - Vec2d{0, 4}, at + Vec2d{22, -4}, curve_ink(i), 3));
       words(at + Vec2d{30, 0}, "light at " + angle_text(slice.incident) + ": " + facts(slice), 11, kTextInk);
     }
+    fitted_lobes();
+  }
+
+  void fitted_lobes() {
+    constexpr double kDash = 5;
+    const size_t n = report_.fitted.size();
+    for (size_t i = 0; i < n; ++i) {
+      Outline lobe = lobe_outline(plot_, report_.fitted[i], curve_ink(i), 1.6);
+      lobe.dash = kDash, lobe.fill = kNoInk;
+      drawing_.marks.emplace_back(std::move(lobe));
+    }
+    if (n == 0) return;
+    const Vec2d at{kLeft + double(n % 2) * kLegendColumn, kLegendTop + double(n / 2) * 18};
+    drawing_.marks.emplace_back(line(at - Vec2d{0, 4}, at + Vec2d{22, -4}, kTextInk, 1.6, kDash));
+    words(at + Vec2d{30, 0}, "as fitted", 11, kTextInk);
   }
 
   void heat_legend(const Vec2d& corner) {
@@ -204,6 +222,7 @@ class Sheet {
     }
     y_ += 4;
     for (const std::string& note : report_.subject.notes) lines(kLeft, note, kFaintInk);
+    if (report_.fit) lines(kLeft, "Fitted " + fit_summary(*report_.fit) + ".", kTextInk);
   }
 
   const BrdfReport& report_;

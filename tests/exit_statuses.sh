@@ -36,6 +36,8 @@ expect 0 brdf "$scene" --material copper
 expect 0 brdf --model phong -o "$work/lobe.svg"
 expect 0 brdf --model lambert -o "$work/lobe.csv" --check
 expect 0 brdf "$work/lobe.csv" --check
+expect 0 brdf "$work/lobe.csv" --fit phong
+expect 2 brdf "$work/lobe.csv" --fit ward
 expect 2 brdf "$work/lobe.csv" --material 0
 expect 3 brdf "$work/absent.csv"
 expect 3 brdf "$scene.binary"
