@@ -14,6 +14,7 @@ template <class T>
 bool keep(const T& t, const T& error, int face, const Rayf& ray, std::vector<ShapeHit>& hits) {
   if (!may_round_into(t, error, T(ray.t_min), T(ray.t_max))) return true;
   if (!(error <= absolute(t) * T(kAccuracy<T>))) return false;
+  if (!surely_rounds_in_or_out(t, error, T(ray.t_min), T(ray.t_max))) return false;
   const float rounded = float(t);
   if (rounded >= ray.t_min && rounded <= ray.t_max) hits.push_back({rounded, uint32_t(face)});
   return true;

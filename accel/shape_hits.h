@@ -48,6 +48,7 @@ struct Nearest {
 };
 
 inline double rounded_to_float(double x) { return double(float(x)); }
+inline Quad rounded_to_float(Quad x) { return Quad(float(x)); }
 inline DoubleLanes rounded_to_float(const DoubleLanes& x) {
   std::array<float, DoubleLanes::size()> buffer;
   x.copy_to(buffer.data(), std::experimental::element_aligned);
@@ -62,6 +63,16 @@ MaskOf<T> may_round_into(const T& t, const T& error, const T& t_min, const T& t_
   return !(t + error < t_min - half_step(t_min)) && !(t - error > t_max + half_step(t_max));
 }
 
+/// Whether it is sure that a parameter, rounded to float, lies in [t_min, t_max], or sure that it does not.
+template <class T>
+MaskOf<T> surely_rounds_in_or_out(const T& t, const T& error, const T& t_min, const T& t_max) {
+  const auto rounds_in = [&](const T& bound) {
+    const T rounded = rounded_to_float(bound);
+    return rounded >= t_min && rounded <= t_max;
+  };
+  return rounds_in(t - error) == rounds_in(t + error);
+}
+
 template <class T>
 [[nodiscard]] Nearest<T> nearest(const LineCrossings<T>& crossings, const T& t_min, const T& t_max) {
   using Mask = MaskOf<T>;
@@ -69,6 +80,9 @@ template <class T>
   for (const auto& c : crossings.at) {
     const Mask candidate = c.present && !found.hit && !found.doubtful && may_round_into(c.t, c.error, t_min, t_max);
     found.doubtful = found.doubtful || (candidate && !(c.error <= absolute(c.t) * kParameterAccuracy));
+    const Mask at_an_end = candidate && !(c.t - c.error >= t_min && c.t + c.error <= t_max);
+    if (any_of(at_an_end))
+      found.doubtful = found.doubtful || (at_an_end && !surely_rounds_in_or_out(c.t, c.error, t_min, t_max));
     const T t = rounded_to_float(c.t);
     const Mask hit = candidate && !found.doubtful && t >= t_min && t <= t_max;
     found.t = select(hit, t, found.t), found.face = select(hit, c.face, found.face);
