@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -371,11 +373,14 @@ struct AcceleratedScene::Traversal {
            !track_of_object(*impl.geometry, object);
   }
 
+  using OwnedScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, decltype([](RTCScene s) { rtcReleaseScene(s); })>;
+
   /// A scene of what stands still, or of what moves from frame to frame; null where there is nothing.
   static RTCScene build(Impl& impl, bool moving) {
     const Geometry& geometry = *impl.geometry;
     const size_t first = impl.top.size();
-    RTCScene scene = new_scene(impl, impl.options);
+    OwnedScene owned(new_scene(impl, impl.options));
+    const RTCScene scene = owned.get();
     for (uint32_t object = 0; object < geometry.mesh_instances.size();) {
       if (is_set(impl.options.moving.meshes, geometry.mesh_instances[object].mesh) != moving)
         ++object;
@@ -393,9 +398,9 @@ struct AcceleratedScene::Traversal {
       impl.shape_groups.push_back(std::move(group));
     }
     if (moving || impl.options.moving.nodes.empty()) attach_blurred_shapes(impl, scene);
-    if (impl.top.size() == first) return rtcReleaseScene(scene), nullptr;
+    if (impl.top.size() == first) return nullptr;
     rtcCommitScene(scene);
-    return scene;
+    return owned.release();
   }
 
   static void attach_blurred_shapes(Impl& impl, RTCScene scene) {
