@@ -80,6 +80,18 @@ template <class T, class N>
   return {dot(map.row_x, v), dot(map.row_y, v), dot(map.row_z, v)};
 }
 
+/// Where a ray is at t, in the inner space, without error bounds. It is moved there before it goes along the ray: a
+/// small shape far from the world's origin would else be met beside its surface.
+[[nodiscard]] inline Vec3d object_point(const LineMap<double>& map, const Rayf& ray, float t) {
+  const Vec3d v = Vec3d(ray.origin) - map.center + Vec3d(ray.direction) * double(t);
+  return {dot(map.row_x, v), dot(map.row_y, v), dot(map.row_z, v)};
+}
+/// The same from the map to the outer space.
+[[nodiscard]] inline Vec3d object_point(const Affine3d& world_from_object, const Rayf& ray, float t) {
+  return transform_vector(inverse(world_from_object),
+                          Vec3d(ray.origin) - world_from_object.origin + Vec3d(ray.direction) * double(t));
+}
+
 /// A normal of the inner space to the outer: by the inverse transpose, not normalised.
 [[nodiscard]] inline Vec3d outer_normal(const LineMap<double>& map, const Vec3d& n) {
   return map.row_x * n.x + map.row_y * n.y + map.row_z * n.z;

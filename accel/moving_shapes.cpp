@@ -38,8 +38,7 @@ void for_each_hit(const Arguments* args, unsigned i, const Visit& visit) {
   hits.clear();
   append_hits(placed, ray, hits);
   for (const ShapeHit& hit : hits) {
-    const Vec3d p_world = Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t);
-    const Crossing crossing{member.object, hit.face, 0, 0, 0, map_point(placed.object_from_world, p_world)};
+    const Crossing crossing{member.object, hit.face, 0, 0, 0, object_point(placed.object_from_world, ray, hit.t)};
     if (visit(member, hit, crossing)) return;
   }
 }

@@ -32,8 +32,7 @@ const ShapeGroup& group_of(const Arguments* args) {
 }
 
 Crossing crossing_of(const ShapeGroup& group, uint32_t k, const Rayf& ray, const ShapeHit& hit) {
-  const Vec3d p_world = Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t);
-  return {group.objects[k], hit.face, 0, 0, 0, map_point(group.members[k].placed.object_from_world, p_world)};
+  return {group.objects[k], hit.face, 0, 0, 0, object_point(group.members[k].placed.object_from_world, ray, hit.t)};
 }
 
 std::vector<ShapeHit>& hits_of(const ShapeGroup::Member& member, const Rayf& ray) {

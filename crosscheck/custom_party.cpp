@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "accel/accelerated_scene.h"
+#include "accel/line_map.h"
 #include "crosscheck/party.h"
 #include "crosscheck/triangle_scene.h"
 
@@ -13,7 +14,7 @@ class ShapeParty final : public Party {
   ShapeParty(Shape shape, const Affine3d& world_from_object)
       : geometry_(geometry_of(std::move(shape), world_from_object)),
         scene_(geometry_, {}, {}),
-        object_from_world_(inverse(world_from_object)) {}
+        world_from_object_(world_from_object) {}
 
   void answer(std::span<const Rayf> rays, std::vector<Answer>& answers) override {
     load(rays);
@@ -46,13 +47,13 @@ class ShapeParty final : public Party {
   }
 
   [[nodiscard]] Answer answer_of(const Rayf& ray, float t, int face) const {
-    const Vec3d n = normal_at_hit(geometry_.shapes.front(), object_from_world_, ray, t, face);
+    const Vec3d n = normal_at_hit(geometry_.shapes.front(), world_from_object_, ray, t, face);
     return {.hit = true, .t = t, .face = face, .normal_object = n};
   }
 
   Geometry geometry_;
   AcceleratedScene scene_;
-  Affine3d object_from_world_;
+  Affine3d world_from_object_;
   RayWave wave_;
   HitWave hits_;
 };
@@ -76,9 +77,8 @@ class TriangleParty final : public Party {
 
 }  // namespace
 
-Vec3d normal_at_hit(const Shape& shape, const Affine3d& object_from_world, const Rayf& ray, float t, int face) {
-  const Vec3d p_world = Vec3d(ray.origin) + Vec3d(ray.direction) * double(t);
-  const Vec3d p_near = transform_point(object_from_world, p_world);
+Vec3d normal_at_hit(const Shape& shape, const Affine3d& world_from_object, const Rayf& ray, float t, int face) {
+  const Vec3d p_near = object_point(world_from_object, ray, t);
   return std::visit([&](const auto& s) { return normal(s, project(s, p_near, face), face); }, shape);
 }
 

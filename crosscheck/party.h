@@ -43,7 +43,7 @@ class Party {
 [[nodiscard]] std::unique_ptr<Party> custom_party(const Subject& subject);
 
 /// The normal where a ray hits, as shading takes it: at the point of the surface nearest to the rounded hit.
-[[nodiscard]] Vec3d normal_at_hit(const Shape& shape, const Affine3d& object_from_world, const Rayf& ray_world, float t,
+[[nodiscard]] Vec3d normal_at_hit(const Shape& shape, const Affine3d& world_from_object, const Rayf& ray_world, float t,
                                   int face);
 
 /// Embree's nearest native geometry, null where there is none: points for spheres and disks, round linear curves for

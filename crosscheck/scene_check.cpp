@@ -99,8 +99,8 @@ struct SceneCheck::Impl {
       Answer& answer = answers[k].answer;
       answer.native.reset();  // it has no barycentric weights
       answer.face = int(std::exchange(answers[k].id.part, 0));
-      answer.normal_object = normal_at_hit(geometry.shapes[placed.shape], inverse(placed.world_from_object),
-                                           wave.get(k), answer.t, answer.face);
+      answer.normal_object =
+          normal_at_hit(geometry.shapes[placed.shape], placed.world_from_object, wave.get(k), answer.t, answer.face);
     }
   }
 

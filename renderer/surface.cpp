@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "accel/line_map.h"
 #include "accel/posed.h"
 
 namespace alhazen {
@@ -141,8 +142,7 @@ SurfacePoint surface_point(const Scene& scene, const Rayf& ray_world, const HitI
                            float time) noexcept {
   if (!is_shape(scene.geometry, ids.object)) return mesh_point(scene, ids, u, v, time);
   const Affine3d m = world_from_object(scene.geometry, ids.object, time);
-  const Vec3d p_world = Vec3d(ray_world.origin) + Vec3d(ray_world.direction) * double(t);
-  SurfacePoint s = shape_point(scene, ids.object, int(ids.part), m, transform_point(inverse(m), p_world));
+  SurfacePoint s = shape_point(scene, ids.object, int(ids.part), m, object_point(m, ray_world, t));
   if (!(dot(s.ng_world, s.ng_world) > 0)) s.ng_world = s.ns_world = -ray_world.direction;  // a singular point
   return s;
 }

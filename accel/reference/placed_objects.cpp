@@ -5,10 +5,6 @@
 namespace alhazen {
 namespace {
 
-Vec3d point_of(const LineMap<double>& object_from_world, const Rayf& ray, float t) {
-  return map_point(object_from_world, Vec3d(ray.origin) + Vec3d(ray.direction) * double(t));
-}
-
 Bounds3d bounds_of(const Mesh& mesh) {
   Bounds3d box;
   for (const TriangleMesh& part : mesh.parts)
@@ -71,7 +67,7 @@ void PlacedObjects::append_shape_hits(uint32_t object, const Rayf& ray, std::vec
   found.clear();
   alhazen::append_hits({map, &instance.world_from_object, &geometry_.shapes[instance.shape]}, ray, found);
   for (const ShapeHit& hit : found)
-    append_if_present({hit.t, {object, hit.face, 0, 0, 0, point_of(map, ray, hit.t)}}, hits);
+    append_if_present({hit.t, {object, hit.face, 0, 0, 0, object_point(map, ray, hit.t)}}, hits);
 }
 
 void PlacedObjects::append_mesh_hits(uint32_t object, const Rayf& ray, std::vector<SurfaceHit>& hits,
@@ -92,7 +88,7 @@ void PlacedObjects::append_mesh_hits(uint32_t object, const Rayf& ray, std::vect
       found.clear();
       alhazen::append_hits(triangle, map, instance.world_from_object, ray, found);
       for (const ShapeHit& hit : found) {
-        const Vec2d uv = weights_at(triangle, point_of(map, ray, hit.t));
+        const Vec2d uv = weights_at(triangle, object_point(map, ray, hit.t));
         append_if_present({hit.t, {object, part, i, float(uv.x), float(uv.y), {}}}, hits);
       }
     }
