@@ -3,19 +3,12 @@
 namespace alhazen {
 namespace {
 
-/// In binary128 only what is truly close to a float's rounding boundary is left in doubt.
-template <class T>
-inline constexpr double kAccuracy = kParameterAccuracy;
-template <>
-inline constexpr double kAccuracy<Quad> = 0x1p-70;
-
 /// Keeps a crossing if it is in range; false where that, or the rounding of t, is not certain.
 template <class T>
 bool keep(const T& t, const T& error, int face, const Rayf& ray, std::vector<ShapeHit>& hits) {
   if (!may_round_into(t, error, T(ray.t_min), T(ray.t_max))) return true;
-  if (!(error <= absolute(t) * T(kAccuracy<T>))) return false;
-  if (!surely_rounds_in_or_out(t, error, T(ray.t_min), T(ray.t_max))) return false;
-  const float rounded = float(t);
+  const float rounded = float(t + error);
+  if (!(rounded == float(t - error))) return false;
   if (rounded >= ray.t_min && rounded <= ray.t_max) hits.push_back({rounded, uint32_t(face)});
   return true;
 }

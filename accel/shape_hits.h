@@ -31,8 +31,7 @@ struct DoubtCounts {
 /// Appends all hits with t_min <= t <= t_max, t as rounded to float, nearest first. Rays that are not finite, or
 /// without direction, hit nothing.
 ///
-/// accuracy  hit or miss, order and face are those of exact arithmetic on the given numbers; t is correctly rounded but
-///           where double cannot tell (an error below 2^-34 relative): then one of the two floats beside it.
+/// accuracy  hit or miss, order and face are those of exact arithmetic on the given numbers; t is correctly rounded.
 /// cost      double, then binary128 for the doubtful, then rational numbers for what is left: see `doubt_counts`.
 void append_hits(const PlacedShape& placed, const Rayf& ray_world, std::vector<ShapeHit>& hits);
 
@@ -48,7 +47,6 @@ struct Nearest {
 };
 
 inline double rounded_to_float(double x) { return double(float(x)); }
-inline Quad rounded_to_float(Quad x) { return Quad(float(x)); }
 inline DoubleLanes rounded_to_float(const DoubleLanes& x) {
   std::array<float, DoubleLanes::size()> buffer;
   x.copy_to(buffer.data(), std::experimental::element_aligned);
@@ -63,27 +61,14 @@ MaskOf<T> may_round_into(const T& t, const T& error, const T& t_min, const T& t_
   return !(t + error < t_min - half_step(t_min)) && !(t - error > t_max + half_step(t_max));
 }
 
-/// Whether it is sure that a parameter, rounded to float, lies in [t_min, t_max], or sure that it does not.
-template <class T>
-MaskOf<T> surely_rounds_in_or_out(const T& t, const T& error, const T& t_min, const T& t_max) {
-  const auto rounds_in = [&](const T& bound) {
-    const T rounded = rounded_to_float(bound);
-    return rounded >= t_min && rounded <= t_max;
-  };
-  return rounds_in(t - error) == rounds_in(t + error);
-}
-
 template <class T>
 [[nodiscard]] Nearest<T> nearest(const LineCrossings<T>& crossings, const T& t_min, const T& t_max) {
   using Mask = MaskOf<T>;
   Nearest<T> found{T(0), T(0), Mask(false), crossings.doubtful};
   for (const auto& c : crossings.at) {
     const Mask candidate = c.present && !found.hit && !found.doubtful && may_round_into(c.t, c.error, t_min, t_max);
-    found.doubtful = found.doubtful || (candidate && !(c.error <= absolute(c.t) * kParameterAccuracy));
-    const Mask at_an_end = candidate && !(c.t - c.error >= t_min && c.t + c.error <= t_max);
-    if (any_of(at_an_end))
-      found.doubtful = found.doubtful || (at_an_end && !surely_rounds_in_or_out(c.t, c.error, t_min, t_max));
-    const T t = rounded_to_float(c.t);
+    const T t = rounded_to_float(c.t + c.error);
+    found.doubtful = found.doubtful || (candidate && !(t == rounded_to_float(c.t - c.error)));
     const Mask hit = candidate && !found.doubtful && t >= t_min && t <= t_max;
     found.t = select(hit, t, found.t), found.face = select(hit, c.face, found.face);
     found.hit = found.hit || hit;
