@@ -26,29 +26,37 @@ Vec3d wall_normal(const QuadricBody<double>& q, const Vec3d& p) {
   return max_component(abs(n)) > kLeastGradient * max_component(terms) ? n : Vec3d{};
 }
 
+/// The normal at p, or `off` beside it in the space of the body that has the face.
 template <class S>
-Vec3d true_normal(const S& body, const Vec3d& p, int face) {
-  return face == kWallFace ? wall_normal(quadric_body<double>(body), p) : face_normal(face);
+Vec3d true_normal(const S& body, const Vec3d& p, int face, const Vec3d& off) {
+  return face == kWallFace ? wall_normal(quadric_body<double>(body), p + off) : face_normal(face);
 }
-Vec3d true_normal(const Disk&, const Vec3d&, int) { return {0, 1, 0}; }
-Vec3d true_normal(const Triangle& t, const Vec3d&, int) { return cross(t.b - t.a, t.c - t.a); }
-Vec3d true_normal(const Polygon& polygon, const Vec3d&, int) {
+Vec3d true_normal(const Disk&, const Vec3d&, int, const Vec3d&) { return {0, 1, 0}; }
+Vec3d true_normal(const Triangle& t, const Vec3d&, int, const Vec3d&) { return cross(t.b - t.a, t.c - t.a); }
+Vec3d true_normal(const Polygon& polygon, const Vec3d&, int, const Vec3d&) {
   const double sx = polygon.exact_plane.slope_x.get_d(), sy = polygon.exact_plane.slope_y.get_d();
   const int k = polygon.dropped_axis;
   const Vec3d n = k == 0 ? Vec3d{1, -sx, -sy} : k == 1 ? Vec3d{-sy, 1, -sx} : Vec3d{-sx, -sy, 1};
   return polygon.unit_normal[k] < 0 ? -n : n;
 }
-Vec3d true_normal(const Composite& composite, const Vec3d& p_object, int face) {
+/// What is as long as `off` in the composite may be as long there as the longest of the chain's images of its axes.
+Vec3d true_normal(const Composite& composite, const Vec3d& p_object, int face, const Vec3d& off) {
   const CompositeLeaf& leaf = composite.leaves[size_t(face / kFacesPerLeaf)];
   Vec3d p = p_object;
-  for (const Affine3d& m : leaf.chain) p = transform_point(inverse(m), p);
-  Vec3d n = std::visit([&](const auto& body) { return true_normal(body, p, face % kFacesPerLeaf); }, leaf.body);
+  std::array<Vec3d, 3> axes = {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
+  for (const Affine3d& m : leaf.chain) {
+    p = transform_point(inverse(m), p);
+    for (Vec3d& axis : axes) axis = transform_vector(inverse(m), axis);
+  }
+  const Vec3d off_leaf = off * std::max({length(axes[0]), length(axes[1]), length(axes[2])});
+  Vec3d n =
+      std::visit([&](const auto& body) { return true_normal(body, p, face % kFacesPerLeaf, off_leaf); }, leaf.body);
   for (size_t k = leaf.chain.size(); k-- > 0;) n = transform_normal(leaf.chain[k], n);
   return leaf.reversed ? -n : n;
 }
 
-Vec3d unit_normal(const Surface& surface, const Vec3d& p, int face) {
-  const Vec3d n = std::visit([&](const auto& s) { return true_normal(s, p, face); }, surface);
+Vec3d unit_normal(const Surface& surface, const Vec3d& p, int face, const Vec3d& off = {}) {
+  const Vec3d n = std::visit([&](const auto& s) { return true_normal(s, p, face, off); }, surface);
   const double size = max_component(abs(n));
   return size > 0 && is_finite(n) ? normalize(n / size) : Vec3d{};
 }
@@ -107,9 +115,10 @@ struct Judge::Impl {
     if (const auto* triangle = std::get_if<Triangle>(&subject.surface)) weigh(*triangle, p_object, j);
     const double d_size = size(line.direction), across = dot(j.normal_object, d / d_size);
     const double off = std::abs(double(t)) * d_size * 0x1p-22 + size(line.origin) * 1e-13;
+    // A point that a rounding of t has taken off the surface is put back in the body's space, in whatever direction.
     j.normal_tolerance = kGradientAngle;
     for (const Vec3d& step : {Vec3d{off, 0, 0}, Vec3d{0, off, 0}, Vec3d{0, 0, off}}) {
-      const Vec3d turned = unit_normal(subject.surface, p_object + step, j.face);
+      const Vec3d turned = unit_normal(subject.surface, p_object, j.face, step);
       j.normal_tolerance = std::max(j.normal_tolerance, 3 * length(turned - j.normal_object));
     }
     j.side = std::abs(across) > kGrazing + j.normal_tolerance ? (across < 0 ? -1 : 1) : 0;
