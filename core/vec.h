@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 namespace alhazen {
 
@@ -142,34 +143,67 @@ template <class T>
   return d - (T(2) * dot(d, n)) * n;
 }
 
-/// A linear colour or a weight for each of red, green and blue (no encoding, no unit).
-struct Rgb {
-  float r = 0, g = 0, b = 0;
+/// A linear colour or a weight for each of red, green and blue (no encoding, no unit); of lanes: one for each lane.
+template <class F>
+struct BasicRgb {
+  F r = 0, g = 0, b = 0;
 
-  constexpr Rgb() = default;
-  constexpr explicit Rgb(float grey) : r(grey), g(grey), b(grey) {}
-  constexpr Rgb(float r_, float g_, float b_) : r(r_), g(g_), b(b_) {}
-  friend bool operator==(const Rgb&, const Rgb&) = default;
+  constexpr BasicRgb() = default;
+  constexpr explicit BasicRgb(F grey) : r(grey), g(grey), b(grey) {}
+  constexpr BasicRgb(F r_, F g_, F b_) : r(r_), g(g_), b(b_) {}
+  /// The same in every lane.
+  template <class G>
+  constexpr explicit BasicRgb(const BasicRgb<G>& c) : r(c.r), g(c.g), b(c.b) {}
+  friend bool operator==(const BasicRgb&, const BasicRgb&) = default;
 };
 
-constexpr Rgb operator+(const Rgb& a, const Rgb& b) { return {a.r + b.r, a.g + b.g, a.b + b.b}; }
-constexpr Rgb operator-(const Rgb& a, const Rgb& b) { return {a.r - b.r, a.g - b.g, a.b - b.b}; }
-constexpr Rgb operator*(const Rgb& a, const Rgb& b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
-constexpr Rgb operator*(const Rgb& a, float s) { return {a.r * s, a.g * s, a.b * s}; }
-constexpr Rgb operator*(float s, const Rgb& a) { return a * s; }
-constexpr Rgb& operator+=(Rgb& a, const Rgb& b) { return a = a + b; }
-constexpr Rgb& operator*=(Rgb& a, const Rgb& b) { return a = a * b; }
+using Rgb = BasicRgb<float>;
+
+template <class F>
+constexpr BasicRgb<F> operator+(const BasicRgb<F>& a, const BasicRgb<F>& b) {
+  return {a.r + b.r, a.g + b.g, a.b + b.b};
+}
+template <class F>
+constexpr BasicRgb<F> operator-(const BasicRgb<F>& a, const BasicRgb<F>& b) {
+  return {a.r - b.r, a.g - b.g, a.b - b.b};
+}
+template <class F>
+constexpr BasicRgb<F> operator*(const BasicRgb<F>& a, const BasicRgb<F>& b) {
+  return {a.r * b.r, a.g * b.g, a.b * b.b};
+}
+template <class F>
+constexpr BasicRgb<F> operator*(const BasicRgb<F>& a, std::type_identity_t<F> s) {
+  return {a.r * s, a.g * s, a.b * s};
+}
+template <class F>
+constexpr BasicRgb<F> operator*(std::type_identity_t<F> s, const BasicRgb<F>& a) {
+  return a * s;
+}
+template <class F>
+constexpr BasicRgb<F>& operator+=(BasicRgb<F>& a, const BasicRgb<F>& b) {
+  return a = a + b;
+}
+template <class F>
+constexpr BasicRgb<F>& operator*=(BasicRgb<F>& a, const BasicRgb<F>& b) {
+  return a = a * b;
+}
 [[nodiscard]] constexpr float max_component(const Rgb& a) { return std::max(a.r, std::max(a.g, a.b)); }
 [[nodiscard]] inline bool is_finite(const Rgb& a) {
   return std::isfinite(a.r) && std::isfinite(a.g) && std::isfinite(a.b);
 }
-[[nodiscard]] constexpr Rgb lerp(const Rgb& a, const Rgb& b, float t) { return a * (1 - t) + b * t; }
+template <class F>
+[[nodiscard]] constexpr BasicRgb<F> lerp(const BasicRgb<F>& a, const BasicRgb<F>& b, std::type_identity_t<F> t) {
+  return a * (1 - t) + b * t;
+}
 
 /// A linear colour with straight (not premultiplied) alpha.
-struct Rgba {
-  Rgb rgb{1.0f};
-  float a = 1;
+template <class F>
+struct BasicRgba {
+  BasicRgb<F> rgb{F(1.0f)};
+  F a = 1;
 };
+
+using Rgba = BasicRgba<float>;
 
 /// "No such element" for the 32-bit indices that scene elements use in place of pointers.
 inline constexpr uint32_t kNone = 0xFFFFFFFFu;

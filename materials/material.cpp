@@ -3,9 +3,11 @@
 namespace alhazen {
 namespace {
 
-Rgba base_color(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) {
-  const Rgba texel = sample(table, material.base_color_texture, ColorSpace::srgb, inputs);
-  return {material.base_color.rgb * texel.rgb * inputs.color.rgb, material.base_color.a * texel.a * inputs.color.a};
+template <class F>
+BasicRgba<F> base_color(const Material& material, const TextureTable& table, const BasicSurfaceInputs<F>& inputs) {
+  const BasicRgba<F> texel = sample(table, material.base_color_texture, ColorSpace::srgb, inputs);
+  return {BasicRgb<F>(material.base_color.rgb) * texel.rgb * inputs.color.rgb,
+          F(material.base_color.a) * texel.a * inputs.color.a};
 }
 
 float coverage_of_alpha(const Material& material, float alpha) {
@@ -74,21 +76,31 @@ Opacity opacity(const Material& material) noexcept {
   return material.alpha_mode == AlphaMode::blend || may_transmit(material) ? Opacity::transparent : Opacity::opaque;
 }
 
-Rgb emission(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept {
+template <class F>
+BasicRgb<F> emission(const Material& material, const TextureTable& table,
+                     const BasicSurfaceInputs<F>& inputs) noexcept {
   // KHR_materials_unlit: the base colour is all there is to see, whatever the lights and emissiveFactor.
   if (material.model == ShadingModel::unlit) return base_color(material, table, inputs).rgb;
-  if (!(max_component(material.emissive) > 0)) return {};
-  return material.emissive * sample(table, material.emissive_texture, ColorSpace::srgb, inputs).rgb;
+  if (!(max_component(material.emissive) > 0)) return BasicRgb<F>(F(0));
+  return BasicRgb<F>(material.emissive) * sample(table, material.emissive_texture, ColorSpace::srgb, inputs).rgb;
 }
+template Rgb emission(const Material&, const TextureTable&, const SurfaceInputs&) noexcept;
+template BasicRgb<ShadingLanes> emission(const Material&, const TextureTable&,
+                                         const BasicSurfaceInputs<ShadingLanes>&) noexcept;
 
-Vec3f tangent_space_normal(const TextureUse& texture, float scale, const TextureTable& table,
-                           const SurfaceInputs& inputs) noexcept {
-  constexpr Vec3f kUp{0, 0, 1};
-  if (!has_texels(table, texture)) return kUp;
-  const Rgb texel = sample(table, texture, ColorSpace::linear, inputs).rgb;
-  const Vec3f n{(2 * texel.r - 1) * scale, (2 * texel.g - 1) * scale, 2 * texel.b - 1};
-  return n.z > 0 && std::isfinite(dot(n, n)) ? normalize(n) : kUp;
+template <class F>
+Vec3<F> tangent_space_normal(const TextureUse& texture, float scale, const TextureTable& table,
+                             const BasicSurfaceInputs<F>& inputs) noexcept {
+  const Vec3<F> up{F(0), F(0), F(1)};
+  if (!has_texels(table, texture)) return up;
+  const BasicRgb<F> texel = sample(table, texture, ColorSpace::linear, inputs).rgb;
+  const Vec3<F> n{(F(2) * texel.r - F(1)) * F(scale), (F(2) * texel.g - F(1)) * F(scale), F(2) * texel.b - F(1)};
+  const F squared = dot(n, n);
+  return select(MaskOf<F>(n.z > F(0) && squared - squared == F(0)), normalize(n), up);
 }
+template Vec3f tangent_space_normal(const TextureUse&, float, const TextureTable&, const SurfaceInputs&) noexcept;
+template Vec3<ShadingLanes> tangent_space_normal(const TextureUse&, float, const TextureTable&,
+                                                 const BasicSurfaceInputs<ShadingLanes>&) noexcept;
 
 float anisotropy_angle(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept {
   const Anisotropy& a = material.anisotropy;

@@ -130,12 +130,15 @@ struct Material {
 [[nodiscard]] Opacity opacity(const Material& material) noexcept;
 
 /// The light that a surface sends out by itself.
-[[nodiscard]] Rgb emission(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept;
+template <class F = float>
+[[nodiscard]] BasicRgb<F> emission(const Material& material, const TextureTable& table,
+                                   const BasicSurfaceInputs<F>& inputs) noexcept;
 
 /// A normal texture's direction in tangent space (x along the tangent, z along the normal), unit length, x and y
 /// scaled; (0, 0, 1) without a texture or where it decodes to nothing usable.
-[[nodiscard]] Vec3f tangent_space_normal(const TextureUse& texture, float scale, const TextureTable& table,
-                                         const SurfaceInputs& inputs) noexcept;
+template <class F = float>
+[[nodiscard]] Vec3<F> tangent_space_normal(const TextureUse& texture, float scale, const TextureTable& table,
+                                           const BasicSurfaceInputs<F>& inputs) noexcept;
 
 /// Where anisotropic highlights are drawn out: the angle in radians from the tangent towards the bitangent.
 [[nodiscard]] float anisotropy_angle(const Material& material, const TextureTable& table,

@@ -2,7 +2,6 @@
 
 #include <numbers>
 
-#include "materials/fresnel.h"
 #include "materials/thin_film.h"
 
 namespace alhazen {
@@ -32,11 +31,9 @@ Rgb base_light(const MetallicRoughnessBsdf& bsdf, const LayerFrames& frames, con
                const Vec3f& h) {
   const float ns = dot(frames.base.n, s), bh = dot(b, h);
   const float specular = ggx(alpha_of(bsdf.roughness, bsdf.anisotropy), frames.base, s, b, h);
-  const Rgb fresnel = dielectric_fresnel(bsdf, bh);
   const Rgb diffuse = bsdf.base_color * (kInvPi * (1 - bsdf.transmission) * (1 - bsdf.diffuse_transmission));
-  const Rgb dielectric = diffuse * (1 - max_component(fresnel)) + fresnel * specular;
-  const Rgb metal = bsdf.metallic > 0 ? metal_fresnel(bsdf, bh) * specular : Rgb{};
-  return lerp(dielectric, metal, bsdf.metallic) * ns;
+  return base_light(bsdf, BaseFresnel<float>{dielectric_fresnel(bsdf, bh), metal_fresnel(bsdf, bh)}, diffuse, specular,
+                    ns);
 }
 
 /// Of light from behind: there is no half vector to reflect about, so the view's angle says what the surface keeps.
@@ -60,19 +57,7 @@ MetallicRoughnessBsdf metallic_roughness_bsdf(const Material& material, const Te
                                               const SurfaceInputs& inputs, float relative_ior) noexcept {
   const auto linear = [&](const TextureUse& use) { return sample(table, use, ColorSpace::linear, inputs); };
   const auto srgb = [&](const TextureUse& use) { return sample(table, use, ColorSpace::srgb, inputs).rgb; };
-  const Rgb metal_rough = linear(material.metallic_roughness_texture).rgb;
-  const float specular = unit(material.specular * linear(material.specular_texture).a);
-  const float root = relative_ior == 0 ? 1 : (relative_ior - 1) / (relative_ior + 1);
-  const Rgb f0 = root * root * material.specular_color * srgb(material.specular_color_texture);
-
-  MetallicRoughnessBsdf bsdf;
-  bsdf.base_color = material.base_color.rgb * inputs.color.rgb * srgb(material.base_color_texture);
-  bsdf.metallic = unit(material.metallic * metal_rough.b);
-  bsdf.roughness = unit(material.roughness * metal_rough.g);
-  bsdf.dielectric_f0 = Rgb{unit(f0.r), unit(f0.g), unit(f0.b)} * specular;
-  bsdf.dielectric_f90 = specular;
-  bsdf.transmission = unit(material.transmission * linear(material.transmission_texture).rgb.r);
-  bsdf.occlusion = unit(1 + material.occlusion_strength * (linear(material.occlusion_texture).rgb.r - 1));
+  MetallicRoughnessBsdf bsdf{base_layer(material, table, inputs, relative_ior)};
   if (const DiffuseTransmission& d = material.diffuse_transmission; d.factor > 0) {
     bsdf.diffuse_transmission = unit(d.factor * linear(d.texture).a);
     bsdf.diffuse_transmission_color = d.color * srgb(d.color_texture);
@@ -147,11 +132,6 @@ float layers_transmittance(const MetallicRoughnessBsdf& bsdf, const LayerFrames&
 float coat_reflectance(const MetallicRoughnessBsdf& bsdf, const Vec3f& coat_n, const Vec3f& b) noexcept {
   if (!(bsdf.clearcoat > 0)) return 0;
   return bsdf.clearcoat * fresnel_schlick(Rgb{kCoatF0}, 1, std::abs(dot(coat_n, b))).r;
-}
-
-float mirror_share(float roughness) noexcept {
-  const float t = unit(2 * roughness);
-  return 1 - t * t * (3 - 2 * t);
 }
 
 }  // namespace alhazen

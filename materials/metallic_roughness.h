@@ -3,21 +3,12 @@
 // under _clearcoat.
 #pragma once
 
-#include "materials/material.h"
-#include "materials/microfacet.h"
+#include "materials/base_layer.h"
 
 namespace alhazen {
 
 /// The model's parameters with textures and vertex colour applied.
-struct MetallicRoughnessBsdf {
-  Rgb base_color;     // without alpha
-  float metallic;     // [0, 1]
-  float roughness;    // perceptual, [0, 1]; alpha = roughness²
-  Rgb dielectric_f0;  // of the dielectric layer: ior, specular and specularColor
-  float dielectric_f90;
-  float transmission;  // [0, 1]
-  float occlusion;     // [0, 1], strength applied
-
+struct MetallicRoughnessBsdf : BaseLayer<float> {
   float diffuse_transmission = 0;  // [0, 1]
   Rgb diffuse_transmission_color{1.0f};
   float anisotropy = 0;  // strength [0, 1]; the frame's t is its direction
@@ -73,9 +64,5 @@ struct DiffuseAlbedo {
 
 /// The share of light that the coat reflects towards b.
 [[nodiscard]] float coat_reflectance(const MetallicRoughnessBsdf& bsdf, const Vec3f& coat_n, const Vec3f& b) noexcept;
-
-/// How much of a mirror reflection a single mirror ray stands for: 1 at roughness 0, falling smoothly to 0 at 0.5 and
-/// above.
-[[nodiscard]] float mirror_share(float roughness) noexcept;
 
 }  // namespace alhazen

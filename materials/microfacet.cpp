@@ -10,20 +10,6 @@ constexpr float kPi = std::numbers::pi_v<float>, kInvPi = std::numbers::inv_pi_v
 
 float square(float x) { return x * x; }
 
-/// 1 / (4 n·s n·b) x G for height-correlated Smith, from |(alpha_t t·w, alpha_b b·w, n·w)|.
-float smith_visibility(float ns, float stretched_s, float nb, float stretched_b) {
-  return 0.5f / (ns * stretched_b + nb * stretched_s);
-}
-
-float isotropic_ggx(float alpha, float ns, float nb, const Vec3f& n, const Vec3f& h) {
-  const float a2 = alpha * alpha, nh = dot(n, h);
-  // 1 - (n·h)² as |n x h|²: no cancellation where a sharp highlight needs the digits.
-  const Vec3f nxh = cross(n, h);
-  const float q = dot(nxh, nxh) + a2 * nh * nh;
-  return a2 * kInvPi / (q * q) *
-         smith_visibility(ns, std::sqrt(ns * ns * (1 - a2) + a2), nb, std::sqrt(nb * nb * (1 - a2) + a2));
-}
-
 /// ln of the visibility's shape, fitted by Estevez and Kulla (section 3).
 float charlie_shape(float cos_theta, float alpha) {
   const float t = square(1 - alpha);
@@ -40,30 +26,17 @@ float charlie_lambda(float cos_theta, float alpha) {
 
 // ---- Tables over roughness and cosine ----
 
-constexpr int kTableSize = 32;
-
 template <class Value>
-using Table = std::array<std::array<Value, kTableSize>, kTableSize>;  // by roughness, then cosine
-
-float table_position(float x) { return std::min(std::max(x, 0.0f), 1.0f) * (kTableSize - 1); }
+using Table = std::array<std::array<Value, kLobeTableSize>, kLobeTableSize>;  // by roughness, then cosine
 
 template <class Value, class Integral>
 Table<Value> tabulated(const Integral& integral) {
   Table<Value> table;
-  for (int i = 0; i < kTableSize; ++i)
-    for (int k = 0; k < kTableSize; ++k)
-      table[size_t(i)][size_t(k)] = integral(float(i) / (kTableSize - 1), std::max(1e-3f, float(k) / (kTableSize - 1)));
+  for (int i = 0; i < kLobeTableSize; ++i)
+    for (int k = 0; k < kLobeTableSize; ++k)
+      table[size_t(i)][size_t(k)] =
+          integral(float(i) / (kLobeTableSize - 1), std::max(1e-3f, float(k) / (kLobeTableSize - 1)));
   return table;
-}
-
-/// Calls `visit(value)` with the bilinear weights of the four entries around (roughness, cosine).
-template <class Value, class Visit>
-void visit_entries(const Table<Value>& table, float roughness, float cos_theta, const Visit& visit) {
-  const float x = table_position(roughness), y = table_position(cos_theta);
-  const int i = std::min(int(x), kTableSize - 2), k = std::min(int(y), kTableSize - 2);
-  const float u = x - float(i), v = y - float(k);
-  for (int a = 0; a < 2; ++a)
-    for (int b = 0; b < 2; ++b) visit(table[size_t(i + a)][size_t(k + b)], (a ? u : 1 - u) * (b ? v : 1 - v));
 }
 
 /// Midpoints of cells of the hemisphere of equal width in the square of the cosine and in azimuth (half of it: lobes
@@ -149,17 +122,13 @@ float charlie(float roughness, float n_dot_s, float n_dot_b, float n_dot_h) noex
 float charlie_albedo(float roughness, float cos_theta) noexcept {
   static const Table<float> table = tabulated<float>(integrate_charlie);
   float sum = 0;
-  visit_entries(table, roughness, cos_theta, [&](float value, float weight) { sum += value * weight; });
+  visit_lobe_table(roughness, cos_theta, [&](int entry, float weight) { sum += table.front().data()[entry] * weight; });
   return sum;
 }
 
-SplitSum ggx_albedo(float roughness, float cos_theta) noexcept {
+const float* ggx_albedo_table() noexcept {
   static const Table<SplitSum> table = tabulated<SplitSum>(integrate_ggx);
-  SplitSum sum{0, 0};
-  visit_entries(table, roughness, cos_theta, [&](const SplitSum& value, float weight) {
-    sum.scale += value.scale * weight, sum.bias += value.bias * weight;
-  });
-  return sum;
+  return &table[0][0].scale;
 }
 
 }  // namespace alhazen

@@ -1,4 +1,5 @@
-// The course's Phong model at one point (ALHAZEN_materials_phong; docs/scene-format.md section 2).
+// The course's Phong model (ALHAZEN_materials_phong; docs/scene-format.md section 2), at one point or at the points of
+// several lanes.
 #pragma once
 
 #include "materials/material.h"
@@ -6,27 +7,80 @@
 namespace alhazen {
 
 /// Phong's parameters with textures and vertex colour applied.
-struct PhongBsdf {
-  Rgb ambient, diffuse, specular;
+template <class F>
+struct BasicPhongBsdf {
+  BasicRgb<F> ambient, diffuse;
+  Rgb specular;
   float shininess;
   Rgb reflection, transmission;
   float ior;
   bool fresnel;
 };
+using PhongBsdf = BasicPhongBsdf<float>;
 
-[[nodiscard]] PhongBsdf phong_bsdf(const Material& material, const TextureTable& table,
-                                   const SurfaceInputs& inputs) noexcept;
+template <class F = float>
+[[nodiscard]] BasicPhongBsdf<F> phong_bsdf(const Material& material, const TextureTable& table,
+                                           const BasicSurfaceInputs<F>& inputs) noexcept {
+  const PhongParameters& p = material.phong;
+  BasicSurfaceInputs<F> point = inputs;  // the model knows no mipmaps
+  point.footprint = 0;
+  const auto textured = [&](const Rgb& factor, const TextureUse& use) {
+    return BasicRgb<F>(factor) * inputs.color.rgb * sample(table, use, ColorSpace::srgb, point).rgb;
+  };
+  return {textured(p.ambient, p.ambient_texture),
+          textured(p.diffuse, p.diffuse_texture),
+          p.specular,
+          p.shininess,
+          p.reflection,
+          p.transmission,
+          p.ior,
+          p.fresnel};
+}
+
+/// x^exponent where `wanted`, else 0.
+template <class F>
+[[nodiscard]] F power_where(const MaskOf<F>& wanted, const F& x, float exponent) noexcept {
+  if constexpr (!IsLanes<F>) {
+    return wanted ? std::pow(x, exponent) : 0;
+  } else {
+    LaneArray<F> values;
+    values.store(x);
+    const uint32_t bits = lane_bits(wanted);
+    for (size_t k = 0; k < kWidthOf<F>; ++k) values[k] = bits >> k & 1 ? std::pow(values[k], exponent) : 0;
+    return values.load();
+  }
+}
 
 /// What a light of unit I adds: r_d max(0, n·s) + r_s max(0, r·b)^alpha, the second term only where n·s > 0.
 /// n: unit normal turned towards b; s: unit, to the light; b: unit, back along the ray.
-[[nodiscard]] Rgb reflected_light(const PhongBsdf& bsdf, const Vec3f& n, const Vec3f& s, const Vec3f& b) noexcept;
+template <class F>
+[[nodiscard]] BasicRgb<F> reflected_light(const BasicPhongBsdf<F>& bsdf, const Vec3<F>& n, const Vec3<F>& s,
+                                          const Vec3<F>& b) noexcept {
+  const F ns = dot(n, s);
+  const MaskOf<F> faces = ns > F(0);
+  BasicRgb<F> light = bsdf.diffuse * ns;
+  if (max_component(bsdf.specular) > 0) {
+    const F rb = dot(F(F(2) * ns) * n - s, b);
+    light += BasicRgb<F>(bsdf.specular) * power_where(MaskOf<F>(faces && rb > F(0)), smaller(rb, F(1)), bsdf.shininess);
+  }
+  return select(faces, light, BasicRgb<F>(F(0)));
+}
 
 /// What the mirror and the refracted ray weigh: reflection and transmission, times the exact F and 1 - F where the
 /// material asks for them. `fresnel`: F, 1 past the critical angle; `passes`: whether there is a refracted ray, else
 /// its share is mirrored, too.
-struct PhongRays {
-  Rgb mirrored, refracted;
+template <class F>
+struct BasicPhongRays {
+  BasicRgb<F> mirrored, refracted;
 };
-[[nodiscard]] PhongRays ray_weights(const PhongBsdf& bsdf, float fresnel, bool passes) noexcept;
+using PhongRays = BasicPhongRays<float>;
+
+template <class F>
+[[nodiscard]] BasicPhongRays<F> ray_weights(const BasicPhongBsdf<F>& bsdf, std::type_identity_t<F> fresnel,
+                                            const MaskOf<F>& passes) noexcept {
+  const BasicRgb<F> reflection(bsdf.reflection), transmission(bsdf.transmission);
+  if (bsdf.fresnel) return {reflection * fresnel, transmission * (F(1) - fresnel)};
+  return {select(passes, reflection, reflection + transmission), select(passes, transmission, BasicRgb<F>(F(0)))};
+}
 
 }  // namespace alhazen

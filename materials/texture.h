@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/lane_vec.h"
 
 namespace alhazen {
 
@@ -46,14 +46,16 @@ struct TextureUse {
 
 enum class ColorSpace : uint8_t { linear, srgb };
 
-/// What a surface brings to a material: interpolated at the hit.
-struct SurfaceInputs {
-  const Vec2f* uvs = nullptr;
+/// What a surface brings to a material: interpolated at the hit. Of lanes: at each of their hits.
+template <class F>
+struct BasicSurfaceInputs {
+  const Vec2<F>* uvs = nullptr;
   int uv_count = 0;
-  Rgba color;                           // vertex colour; white where the mesh has none
-  float footprint = 0;                  // metres of the surface that a look-up stands for; 0: a point
-  const float* uv_per_metre = nullptr;  // for each of `uvs`; none: unknown, a point is looked up
+  BasicRgba<F> color;               // vertex colour; white where the mesh has none
+  F footprint = 0;                  // metres of the surface that a look-up stands for; 0: a point
+  const F* uv_per_metre = nullptr;  // for each of `uvs`; none, or 0: unknown, a point is looked up
 };
+using SurfaceInputs = BasicSurfaceInputs<float>;
 
 /// What texture look-ups read; views into a Scene.
 struct TextureTable {
@@ -67,14 +69,19 @@ struct TextureTable {
 /// Texel centres lie at half integers; wrapping is exact for any finite uv (non-finite reads as (0, 0)). With `srgb`
 /// the colour channels are decoded (IEC 61966-2-1) texel by texel before they are filtered; alpha never is. Grey fills
 /// r, g, b; a missing alpha is 1.
-[[nodiscard]] Rgba sample_used(const TextureTable& table, const TextureUse& use, ColorSpace space,
-                               const SurfaceInputs& inputs) noexcept;
+template <class F = float>
+[[nodiscard]] BasicRgba<F> sample_used(const TextureTable& table, const TextureUse& use, ColorSpace space,
+                                       const BasicSurfaceInputs<F>& inputs) noexcept;
 
 /// The same; most materials use few of the textures that they might.
-[[nodiscard]] inline Rgba sample(const TextureTable& table, const TextureUse& use, ColorSpace space,
-                                 const SurfaceInputs& inputs) noexcept {
-  return use ? sample_used(table, use, space, inputs) : Rgba{Rgb{1.0f}, 1.0f};
+template <class F = float>
+[[nodiscard]] BasicRgba<F> sample(const TextureTable& table, const TextureUse& use, ColorSpace space,
+                                  const BasicSurfaceInputs<F>& inputs) noexcept {
+  return use ? sample_used(table, use, space, inputs) : BasicRgba<F>{};
 }
+
+/// As many points as are shaded at once: what look-ups and materials are compiled for beside single points.
+using ShadingLanes = std::experimental::native_simd<float>;
 
 /// IEC 61966-2-1 and back, for one channel. Exact at 0 and 1.
 [[nodiscard]] float linear_from_srgb(float encoded) noexcept;

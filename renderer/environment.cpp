@@ -9,6 +9,7 @@
 #include "core/fork_join.h"
 #include "core/sampling.h"
 #include "materials/microfacet.h"
+#include "materials/texture.h"
 #include "renderer/equirectangular.h"
 
 namespace alhazen {
@@ -113,18 +114,6 @@ Rgb gathered(const std::vector<ColorImage>& levels, const std::vector<LobeSample
   return sum;
 }
 
-std::array<float, 9> harmonics_at(const Vec3f& d) {
-  return {0.282095f,
-          0.488603f * d.y,
-          0.488603f * d.z,
-          0.488603f * d.x,
-          1.092548f * d.x * d.y,
-          1.092548f * d.y * d.z,
-          0.315392f * (3 * d.z * d.z - 1),
-          1.092548f * d.x * d.z,
-          0.546274f * (d.x * d.x - d.y * d.y)};
-}
-
 std::array<Rgb, 9> projected(const ColorImage& image) {
   std::array<Vec3d, 9> sum{};
   for (int y = 0; y < image.height; ++y) {
@@ -186,25 +175,63 @@ Environment make_environment(ColorImage image) {
   return environment;
 }
 
-Rgb environment_radiance(const Environment& environment, const Vec3f& direction_world, float roughness) noexcept {
-  const Vec2f place = equirectangular_place(transform_vector(environment.environment_from_world, direction_world));
-  const float x = std::clamp(roughness, 0.0f, 1.0f) * float(environment.levels.size() - 1);
-  const size_t k = std::min(size_t(x), environment.levels.size() - 1);
-  const Rgb sharp = bilinear(environment.levels[k], place);
-  const float t = x - float(k);
-  if (!(t > 0)) return sharp * environment.strength;
-  return lerp(sharp, bilinear(environment.levels[k + 1], place), t) * environment.strength;
+namespace {
+
+/// Bilinear look-ups of a level of its own in each lane.
+template <class F>
+BasicRgb<F> looked_up(const std::array<const ColorImage*, kWidthOf<F>>& levels, const Vec2<F>& place) {
+  using I = IntOf<F>;
+  LaneArray<F> width, height;
+  for (size_t k = 0; k < kWidthOf<F>; ++k) width[k] = float(levels[k]->width), height[k] = float(levels[k]->height);
+  const F x = place.x * width.load() - F(0.5f), y = place.y * height.load() - F(0.5f);
+  // One texel beyond the edges at most: x and y are at least -0.5.
+  const I x0 = convert<I>(F(x + F(1))) - I(1), y0 = convert<I>(F(y + F(1))) - I(1);
+  const F s = x - convert<F>(x0), t = y - convert<F>(y0);
+  LaneArray<I> column, row;
+  column.store(x0), row.store(y0);
+  RgbArray<F> t00, t10, t01, t11;
+  for (size_t k = 0; k < kWidthOf<F>; ++k) {
+    const ColorImage& image = *levels[k];
+    const int i = column[k], j = row[k], w = image.width, h = image.height;
+    const int left = i < 0 ? w - 1 : i >= w ? 0 : i, right = i + 1 >= w ? 0 : i + 1;
+    const size_t above = size_t(std::clamp(j, 0, h - 1)), below = size_t(std::clamp(j + 1, 0, h - 1));
+    const auto at = [&](int u, size_t v) {
+      const float* p = image.pixels.data() + (v * size_t(w) + size_t(u)) * 3;
+      return Rgb{p[0], p[1], p[2]};
+    };
+    t00.set(k, at(left, above)), t10.set(k, at(right, above));
+    t01.set(k, at(left, below)), t11.set(k, at(right, below));
+  }
+  return lerp(lerp(t00.load(), t10.load(), s), lerp(t01.load(), t11.load(), s), t);
 }
 
-Rgb environment_diffuse(const Environment& environment, const Vec3f& n_world) noexcept {
-  // The cosine lobe's factors by degree, over pi.
-  constexpr std::array<float, 9> kLobe{1, 2 / 3.0f, 2 / 3.0f, 2 / 3.0f, 0.25f, 0.25f, 0.25f, 0.25f, 0.25f};
-  const auto basis = harmonics_at(transform_vector(environment.environment_from_world, n_world));
-  Rgb sum;
-  for (size_t k = 0; k < 9; ++k) sum += environment.harmonics[k] * (basis[k] * kLobe[k]);
-  const auto positive = [&](float c) { return std::max(0.0f, c * environment.strength); };
-  return {positive(sum.r), positive(sum.g), positive(sum.b)};
+}  // namespace
+
+template <class F>
+BasicRgb<F> environment_radiance(const Environment& environment, const Vec3<F>& direction_world,
+                                 std::type_identity_t<F> roughness) noexcept {
+  const Vec2<F> place = equirectangular_place(rotated(environment.environment_from_world, direction_world));
+  const F level = clamped(roughness, 0, 1) * F(float(environment.levels.size() - 1));
+  LaneArray<F> levels, fraction;
+  levels.store(level);
+  std::array<const ColorImage*, kWidthOf<F>> sharp, blurred;
+  bool between = false;
+  for (size_t k = 0; k < kWidthOf<F>; ++k) {
+    const size_t below = std::min(size_t(levels[k]), environment.levels.size() - 1);
+    fraction[k] = levels[k] - float(below);
+    between = between || fraction[k] > 0;
+    sharp[k] = &environment.levels[below];
+    blurred[k] = fraction[k] > 0 ? &environment.levels[below + 1] : sharp[k];
+  }
+  const F strength(environment.strength);
+  const BasicRgb<F> first = looked_up<F>(sharp, place);
+  if (!between) return first * strength;
+  return lerp(first, looked_up<F>(blurred, place), fraction.load()) * strength;
 }
+
+template Rgb environment_radiance(const Environment&, const Vec3f&, float) noexcept;
+template BasicRgb<ShadingLanes> environment_radiance(const Environment&, const Vec3<ShadingLanes>&,
+                                                     ShadingLanes) noexcept;
 
 Environment studio_environment(const Vec3d& forward_world) {
   constexpr int kWidth = 256;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/vec.h"
+#include "core/angle.h"
 
 namespace alhazen {
 
@@ -18,9 +18,10 @@ namespace alhazen {
 }
 
 /// Where a unit direction lies in the image, from 0 to 1 each way.
-[[nodiscard]] inline Vec2f equirectangular_place(const Vec3f& d) {
+template <class F>
+[[nodiscard]] Vec2<F> equirectangular_place(const Vec3<F>& d) {
   constexpr float kPi = std::numbers::pi_v<float>;
-  return {0.5f + std::atan2(d.x, -d.z) / (2 * kPi), std::acos(std::clamp(d.y, -1.0f, 1.0f)) / kPi};
+  return {F(0.5f) + arc_tangent(d.x, F(-d.z)) / F(2 * kPi), arc_cosine(clamped(d.y, -1, 1)) / F(kPi)};
 }
 
 }  // namespace alhazen

@@ -1,6 +1,7 @@
 #include "renderer/layer_recorder.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "materials/metallic_roughness.h"
 #include "materials/phong.h"
@@ -157,6 +158,7 @@ void LayerRecorder::begin_sample(int sample, const PathWave& camera_rays, const 
 
 void LayerRecorder::take_wave(size_t first) {
   followed_.take_wave(first);
+  traced_ = true;
   wave_size_ = followed_.wave_size();
   since_ = Clock::now();
 }
@@ -167,7 +169,7 @@ void LayerRecorder::charge(uint32_t pixel, Clock::duration time) {
 
 void LayerRecorder::look_at(size_t i) {
   const auto now = Clock::now();
-  if (i == 0)
+  if (std::exchange(traced_, false))
     for (size_t k = 0; k < wave_size_; ++k) charge(followed_[k].pixel, (now - since_) / int64_t(wave_size_));
   else
     charge(looked_at_.pixel, now - since_);

@@ -85,6 +85,7 @@ class LayerRecorder final : public TraceObserver {
   Followed looked_at_;
   std::vector<Asked> asked_;
   size_t wave_size_ = 0;
+  bool traced_ = false;  // the wave, and nothing of it is shaded yet
   Clock::time_point since_;
 };
 

@@ -67,6 +67,7 @@ void push_camera_rays(const Camera& camera, const RenderOptions& options, const 
 struct CellWorker {
   const Scene& scene;
   const AcceleratedScene& accelerated;
+  const ShadingGroups& groups;
   const Camera& camera;
   const RenderOptions& options;
   RenderControl& control;
@@ -130,7 +131,7 @@ struct CellWorker {
       radiance.fill(Rgb(0.0f)), background.fill(0.0f);
       push_camera_rays(camera, options, cell, uint32_t(sample), moving, arena);
       if (arena.observer) arena.observer->begin_sample(sample, arena.pending, arena.time_of_pixel);
-      trace_whitted(scene, accelerated, options, arena, radiance.data(), background.data());
+      trace_whitted(scene, accelerated, groups, options, arena, radiance.data(), background.data());
       arena.clock.enter(Phase::film);
       for (size_t p = 0; p < radiance.size(); ++p) {
         if (!is_finite(radiance[p])) {
@@ -191,7 +192,8 @@ RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, con
     result.color = empty_picture(options.width, options.height);
     result.layers = empty_layers(scene, options.layers, options.width, options.height);
   }
-  const CellWorker worker{scene, accelerated, camera, options, control, result, is_moving(scene, camera)};
+  const ShadingGroups groups(scene);
+  const CellWorker worker{scene, accelerated, groups, camera, options, control, result, is_moving(scene, camera)};
   const int cells_x = (options.width + kCellSize - 1) / kCellSize,
             cells_y = (options.height + kCellSize - 1) / kCellSize;
   const int side = std::max(1, (options.tile_size + kCellSize - 1) / kCellSize);  // cells a side of a tile
@@ -227,7 +229,8 @@ CellPicture render_cell(const Scene& scene, const AcceleratedScene& accelerated,
   arena.observer = &observer;
   RenderOptions alone = options;  // the observer is told, not the layers
   alone.layers.clear();
-  const CellWorker worker{scene,   accelerated, camera, alone, control, result, is_moving(scene, camera),
+  const ShadingGroups groups(scene);
+  const CellWorker worker{scene,   accelerated, groups, camera, alone, control, result, is_moving(scene, camera),
                           cell.x0, cell.y0};
   if (!worker.trace(cell, arena)) return {};
   return {cell.x0, cell.y0, std::move(result.color)};

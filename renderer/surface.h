@@ -2,30 +2,34 @@
 #pragma once
 
 #include <array>
+#include <compare>
 
 #include "accel/accelerated_scene.h"
+#include "core/lane_vec.h"
 #include "renderer/scene.h"
 
 namespace alhazen {
 
-struct SurfacePoint {
-  Vec3d p_world;
-  float offset = 0;          // metres along the geometric normal that clear the position's error
-  Vec3f ng_world, ns_world;  // geometric and interpolated normal, unit, outward
-  Vec3f tangent_world;       // unit or zero
-  float bitangent_sign = 1;
-  std::array<Vec2f, kMaxUvSets> uvs;
+/// One surface point, or those of several lanes.
+template <class F>
+struct BasicSurfacePoint {
+  Vec3<DoubleOf<F>> p_world;
+  F offset = 0;                // metres along the geometric normal that clear the position's error
+  Vec3<F> ng_world, ns_world;  // geometric and interpolated normal, unit, outward
+  Vec3<F> tangent_world;       // unit or zero
+  F bitangent_sign = 1;
+  std::array<Vec2<F>, kMaxUvSets> uvs;
   int uv_count = 0;
-  Rgba color;
+  BasicRgba<F> color;
   uint32_t material = 0;
-  std::array<float, kMaxUvSets> uv_per_metre;  // on triangles: the root of the ratio of areas
-  bool has_uv_per_metre = false;
-  float footprint = 0;  // metres across, of what the hit stands for; 0: a point
+  std::array<F, kMaxUvSets> uv_per_metre{};  // on triangles: the root of the ratio of areas; else 0
+  F footprint = 0;                           // metres across, of what the hit stands for; 0: a point
 
-  [[nodiscard]] SurfaceInputs inputs() const {
-    return {uvs.data(), uv_count, color, footprint, has_uv_per_metre ? uv_per_metre.data() : nullptr};
+  [[nodiscard]] BasicSurfaceInputs<F> inputs() const {
+    return {uvs.data(), uv_count, color, footprint, uv_per_metre.data()};
   }
 };
+using SurfacePoint = BasicSurfacePoint<float>;
 
 struct HitIds {
   uint32_t object, part, primitive;
@@ -44,11 +48,45 @@ struct SurfaceIds {
 [[nodiscard]] SurfacePoint surface_point(const Scene& scene, const Rayf& ray_world, const HitIds& ids, float t, float u,
                                          float v, float time = 0) noexcept;
 
+/// What a mesh's part has beside positions.
+struct Attributes {
+  bool normals = false, tangents = false, colors = false;
+  size_t uv_sets = 0;
+  friend auto operator<=>(const Attributes&, const Attributes&) = default;
+};
+[[nodiscard]] inline Attributes attributes(const TriangleMesh& part) {
+  return {!part.normals.empty(), !part.tangents.empty(), !part.colors.empty(), part.uvs.size()};
+}
+
+/// Hits side by side: all on shapes, or all on parts of meshes with the same attributes and no polygon normals. Nothing
+/// moves.
+struct LaneHits {
+  std::array<HitIds, kWidthOf<ShadingLanes>> ids;
+  Vec3Array<ShadingLanes> origin, direction;  // of the rays, in world space
+  LaneArray<ShadingLanes> t, u, v;
+};
+
+/// `surface_point` of each, to the bit, as far as a material asks: `has` may lack what the parts have. Without
+/// `has_textures`, how fast texture coordinates run is left out.
+[[nodiscard]] BasicSurfacePoint<ShadingLanes> surface_points(const Scene& scene, const LaneHits& hits,
+                                                             const Attributes& has, bool has_textures) noexcept;
+
 /// Only what texture look-ups need, for crossings met in traversal.
 [[nodiscard]] SurfacePoint surface_point(const Scene& scene, const Crossing& crossing) noexcept;
 
 /// Where a ray that leaves `point` along `direction` starts: on the exact side of the surface, further off than the
 /// error of the position and of the traversal's own arithmetic.
-[[nodiscard]] Vec3f spawn_origin(const SurfacePoint& point, const Vec3f& direction) noexcept;
+template <class F>
+[[nodiscard]] Vec3<F> spawn_origin(const BasicSurfacePoint<F>& point, const Vec3<F>& direction) noexcept {
+  using D = DoubleOf<F>;
+  const Vec3<F> n_f = select(dot(point.ng_world, direction) < F(0), -point.ng_world, point.ng_world);
+  const Vec3<D> n = convert<D>(n_f);
+  const Vec3<D> p = point.p_world + n * convert<D>(point.offset);
+  const auto away = [](const D& x, const F& toward) {
+    const F nearest = convert<F>(x);
+    return select(toward > F(0), next_up(nearest), select(toward < F(0), F(-next_up(F(-nearest))), nearest));
+  };
+  return {away(p.x, n_f.x), away(p.y, n_f.y), away(p.z, n_f.z)};
+}
 
 }  // namespace alhazen

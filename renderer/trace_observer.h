@@ -53,7 +53,7 @@ class TraceObserver {
   /// The pending rays from `first` on become the wave: its ray i is the pending one first + i.
   virtual void take_wave(size_t first) = 0;
 
-  /// What follows is said of ray i of the wave, until the next.
+  /// What follows is said of ray i of the wave, until the next. Rays come in the order in which they are shaded.
   virtual void look_at(size_t i) = 0;
   virtual void hit(const ShadedHit& hit) = 0;
   /// The surface lies within a body of higher priority: the ray goes straight on.

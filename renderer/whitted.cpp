@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "materials/fresnel.h"
 #include "materials/metallic_roughness.h"
 #include "materials/phong.h"
+#include "renderer/lane_shading.h"
+#include "renderer/light.h"
 #include "renderer/moving.h"
+#include "renderer/shading_terms.h"
 #include "renderer/trace_observer.h"
 
 namespace alhazen {
@@ -26,12 +31,6 @@ struct Shading {
   Cone cone;          // of the ray, at the hit
   Boundary boundary;  // where the surface bounds a body
 };
-
-/// A direction in tangent space brought to the world.
-Vec3f world_from_tangent(const SurfacePoint& surface, const Vec3f& m) {
-  const Vec3f t = surface.tangent_world, bitangent = cross(surface.ns_world, t) * surface.bitangent_sign;
-  return normalize(t * m.x + bitangent * m.y + surface.ns_world * m.z);
-}
 
 bool has_tangent(const SurfacePoint& surface) { return dot(surface.tangent_world, surface.tangent_world) > 0; }
 
@@ -56,10 +55,11 @@ MeasuredBsdf without_diffuse(MeasuredBsdf bsdf) {
 template <bool observed>
 class Whitted {
  public:
-  Whitted(const Scene& scene, const AcceleratedScene& accelerated, const RenderOptions& options, WaveArena& arena,
-          Rgb* radiance, float* background)
+  Whitted(const Scene& scene, const AcceleratedScene& accelerated, const ShadingGroups& groups,
+          const RenderOptions& options, WaveArena& arena, Rgb* radiance, float* background)
       : scene_(scene),
         accelerated_(accelerated),
+        groups_(groups),
         options_(options),
         arena_(arena),
         radiance_(radiance),
@@ -76,10 +76,7 @@ class Whitted {
       arena_.clock.enter(Phase::traversal);
       accelerated_.intersect(arena_.current.rays, first ? Coherence::coherent : Coherence::incoherent, arena_.hits);
       arena_.clock.enter(Phase::shading);
-      for (size_t i = 0; i < arena_.current.size(); ++i) {
-        tell([&](TraceObserver& observer) { observer.look_at(i); });
-        shade(i);
-      }
+      shade_wave();
       trace_shadows(first ? Coherence::coherent : Coherence::incoherent);
       first = false;
     }
@@ -128,6 +125,83 @@ class Whitted {
     from.resize(first);
   }
 
+  /// Group by group, so that those on one material can go side by side. An observer gets to see them one by one, in the
+  /// same order.
+  void shade_wave() {
+    sort_by_group();
+    const bool lanes = !observed && arena_.time_of_pixel.size() == 0;
+    const uint32_t* hits = arena_.sorted.data();
+    for (size_t group = 0; group < groups_.size(); ++group) {
+      const size_t first = group == 0 ? 0 : arena_.group_ends[group - 1], end = arena_.group_ends[group];
+      if (lanes && groups_[group].in_lanes) {
+        for (size_t i = first; i < end; i += kLanes)
+          shade_in_lanes(groups_[group], {hits + i, std::min(kLanes, end - i)});
+        continue;
+      }
+      for (size_t i = first; i < end; ++i) {
+        tell([&](TraceObserver& observer) { observer.look_at(hits[i]); });
+        shade(hits[i]);
+      }
+    }
+  }
+
+  /// Counts, then places: `sorted` holds the wave's numbers group after group, each in the wave's order; what misses is
+  /// in group 0.
+  void sort_by_group() {
+    const HitWave& hits = arena_.hits;
+    const size_t n = arena_.current.size();
+    Lanes<uint32_t>&ends = arena_.group_ends, &group_of = arena_.group_of_hit;
+    ends.resize(groups_.size()), group_of.resize(n), arena_.sorted.resize(n);
+    std::fill_n(ends.data(), groups_.size(), 0);
+    for (size_t i = 0; i < n; ++i) {
+      group_of[i] = hits.object[i] == kNone ? 0 : groups_.of(scene_.geometry, hits.object[i], hits.part[i]);
+      ++ends[group_of[i]];
+    }
+    uint32_t sum = 0;
+    for (size_t group = 0; group < groups_.size(); ++group) sum += std::exchange(ends[group], sum);
+    for (size_t i = 0; i < n; ++i) arena_.sorted[ends[group_of[i]]++] = uint32_t(i);
+  }
+
+  static constexpr size_t kLanes = kWidthOf<ShadingLanes>;
+
+  void shade_in_lanes(const ShadingGroup& group, std::span<const uint32_t> hits) {
+    LaneWork& work = arena_.lane_work;
+    const RayWave& rays = arena_.current.rays;
+    for (size_t k = 0; k < kLanes; ++k) {
+      const uint32_t i = hits[k < hits.size() ? k : 0];
+      const Path& path = arena_.current.paths[i];
+      work.hits.ids[k] = {arena_.hits.object[i], arena_.hits.part[i], arena_.hits.primitive[i]};
+      work.hits.origin.set(k, rays.origin.get(i)), work.hits.direction.set(k, rays.direction.get(i));
+      work.hits.t[k] = arena_.hits.t[i], work.hits.u[k] = arena_.hits.u[i], work.hits.v[k] = arena_.hits.v[i];
+      work.weight.set(k, arriving_weight(path, arena_.hits.t[i]));
+      work.cone_width[k] = path.cone.width_at(arena_.hits.t[i]);
+    }
+    LaneLight& light = arena_.lane_light;
+    shade_lanes(scene_, group, work, light);
+    for (size_t k = 0; k < hits.size(); ++k) {
+      const Path& path = arena_.current.paths[hits[k]];
+      radiance_[path.pixel] += light.emission.get(k);
+      radiance_[path.pixel] += light.ambient.get(k);
+      for (const LaneRays& shadow : light.shadow)
+        if (shadow.lanes >> k & 1)
+          push_shadow({shadow.origin.get(k), shadow.direction.get(k), 0, shadow.t_max[k]}, path.pixel,
+                      shadow.weight.get(k));
+      const Cone cone{work.cone_width[k], path.cone.spread};
+      const auto spawned = [&](const LaneRays& spawned_rays, RayKind kind) {
+        if (!(spawned_rays.lanes >> k & 1)) return;
+        const Path next = next_path(path, spawned_rays.weight.get(k), kind, path.media, cone, light.roughness[k]);
+        if (outcome_of(next) == SpawnOutcome::traced)
+          arena_.pending.push({spawned_rays.origin.get(k), spawned_rays.direction.get(k)}, next);
+      };
+      spawned(light.mirror, RayKind::mirror), spawned(light.refracted, RayKind::refracted);
+    }
+  }
+
+  /// What is left of a ray's weight after a distance.
+  [[nodiscard]] Rgb arriving_weight(const Path& path, float t) const {
+    return path.media.count > 0 ? path.weight * transmittance(path.media, scene_.materials, t) : path.weight;
+  }
+
   void shade(size_t i) {
     const Path& path = arena_.current.paths[i];
     const HitWave& hits = arena_.hits;
@@ -141,14 +215,12 @@ class Whitted {
     const HitIds ids{hits.object[i], hits.part[i], hits.primitive[i]};
     SurfacePoint surface = surface_point(scene_, ray, ids, hits.t[i], hits.u[i], hits.v[i], time_of(path.pixel));
     const Cone cone{path.cone.width_at(hits.t[i]), path.cone.spread};
-    // A slanted surface shows more of itself along one axis: the mean of both, for mip levels have no direction.
-    surface.footprint = cone.width / std::sqrt(std::max(1e-3f, std::abs(dot(surface.ng_world, ray.direction))));
+    surface.footprint = footprint(cone.width, surface.ng_world, ray.direction);
     const Material& material = scene_.materials[surface.material];
     const SurfaceInputs inputs = surface.inputs();
     const float alpha = material.alpha_mode == AlphaMode::blend ? coverage(material, table_, inputs) : 1.0f;
-    const Rgb arriving =
-        path.media.count > 0 ? path.weight * transmittance(path.media, scene_.materials, hits.t[i]) : path.weight;
-    Vec3f n = shading_normal(surface, material.normal_texture, material.normal_scale);
+    const Rgb arriving = arriving_weight(path, hits.t[i]);
+    Vec3f n = shading_normal(surface, material.normal_texture, material.normal_scale, table_);
     const bool enters = dot(n, ray.direction) < 0;
     if (!enters) n = -n;
     Shading s{surface, material, ray.direction, -ray.direction, n, enters, arriving * alpha, path, cone, {}};
@@ -201,24 +273,13 @@ class Whitted {
     return scene_.environment->seen ? view && scene_.has_background : path.kind != RayKind::mirror;
   }
 
-  /// What a white Lambertian surface reflects of the light without a place.
-  [[nodiscard]] Rgb ambient_light(const Vec3f& n) const {
-    return scene_.environment ? scene_.ambient + environment_diffuse(*scene_.environment, n) : scene_.ambient;
-  }
-
   /// Of what lies beyond the surface to what lies before it.
   static float relative_ior(const Shading& s) {
     return bounds_body(s.material) ? s.boundary.ior_after.g / s.boundary.ior_before.g : s.material.ior;
   }
 
-  [[nodiscard]] Vec3f shading_normal(const SurfacePoint& s, const TextureUse& texture, float scale) const {
-    if (!texture || !has_tangent(s)) return s.ns_world;
-    const Vec3f n = world_from_tangent(s, tangent_space_normal(texture, scale, table_, s.inputs()));
-    return is_finite(n) && dot(n, n) > 0 ? n : s.ns_world;
-  }
-
   void shade_phong(const Shading& s, const PhongBsdf& bsdf) {
-    add(s.path, LightTerm::ambient, s.weight * bsdf.ambient * ambient_light(s.n));
+    add(s.path, LightTerm::ambient, s.weight * bsdf.ambient * ambient_light(scene_, s.n));
     const auto reflected = [&](const PhongBsdf& of, const Vec3f& to_light) {
       return reflected_light(of, s.n, to_light, s.b);
     };
@@ -229,7 +290,7 @@ class Whitted {
     Vec3f refracted;
     const bool transmits = max_component(bsdf.transmission) > 0;
     const bool passes = transmits && refract(s.d, s.n, eta, refracted);
-    const float f = bsdf.fresnel ? fresnel_dielectric(std::min(1.0f, dot(s.n, s.b)), eta) : 0.0f;
+    const float f = bsdf.fresnel ? fresnel_dielectric(smaller(1.0f, dot(s.n, s.b)), eta) : 0.0f;
     if (transmits) tell([&](TraceObserver& observer) { observer.part(phong_interface(s, bsdf, f, !passes)); });
     const PhongRays rays = ray_weights(bsdf, f, passes);
     spawn(s, reflect(s.d, s.n), s.weight * rays.mirrored, RayKind::mirror, s.path.media);
@@ -249,12 +310,13 @@ class Whitted {
     const MeasuredAlbedo albedo = measured_albedo(bsdf, dot(s.n, s.b));
     const float roughness = bsdf.brdf->roughness, share = mirror_share(roughness);
     const Vec3f mirrored = reflect(s.d, s.n);
-    const Rgb ambient =
-        albedo.diffuse * ambient_light(s.n) + albedo.highlight * (1 - share) * blurred(mirrored, roughness);
+    const Rgb ambient = albedo.diffuse * ambient_light(scene_, s.n) +
+                        albedo.highlight * (1 - share) * blurred(scene_, mirrored, roughness);
     add(s.path, LightTerm::ambient, s.weight * ambient);
     add_lights(s, bsdf,
                [&](const MeasuredBsdf& of, const Vec3f& to_light) { return reflected_light(of, s.n, to_light, s.b); });
-    spawn(s, above_surface(s, mirrored), s.weight * albedo.highlight * share, RayKind::mirror, s.path.media, roughness);
+    spawn(s, above_surface(s.surface.ng_world, s.b, mirrored), s.weight * albedo.highlight * share, RayKind::mirror,
+          s.path.media, roughness);
   }
 
   void shade_metallic_roughness(const Shading& s, const MetallicRoughnessBsdf& bsdf, const Rgb& emitted) {
@@ -264,11 +326,12 @@ class Whitted {
     const float left = layers_transmittance(bsdf, frames, s.b);
     add(s.path, LightTerm::emission, emitted * (1 - coat));
     const DiffuseAlbedo diffuse = diffuse_albedo(bsdf, frames, s.b);
-    Rgb ambient = diffuse.front * ambient_light(s.n);
-    if (bsdf.diffuse_transmission > 0) ambient += diffuse.back * ambient_light(-s.n);
+    Rgb ambient = diffuse.front * ambient_light(scene_, s.n);
+    if (bsdf.diffuse_transmission > 0) ambient += diffuse.back * ambient_light(scene_, -s.n);
     // The part of the reflections that no mirror ray stands for.
     ambient += rough_reflection(s, bsdf) * (left * (1 - share));
-    if (coat > 0) ambient += blurred(reflect(s.d, frames.coat_n), bsdf.clearcoat_roughness) * (coat * (1 - coat_share));
+    if (coat > 0)
+      ambient += blurred(scene_, reflect(s.d, frames.coat_n), bsdf.clearcoat_roughness) * (coat * (1 - coat_share));
     add(s.path, LightTerm::ambient, s.weight * ambient * bsdf.occlusion);
     add_lights(s, bsdf, [&](const MetallicRoughnessBsdf& of, const Vec3f& to_light) {
       return reflected_light(of, frames, to_light, s.b);
@@ -279,10 +342,10 @@ class Whitted {
       observer.part({s.boundary.ior_before, s.boundary.ior_after, passing.fresnel, true, !passing.passes});
     });
     const Rgb through = (Rgb(1.0f) - passing.fresnel) * bsdf.base_color;
-    spawn(s, above_surface(s, reflect(s.d, frames.coat_n)), s.weight * (coat * coat_share), RayKind::mirror,
-          s.path.media, bsdf.clearcoat_roughness);
-    spawn(s, above_surface(s, reflect(s.d, s.n)), s.weight * passing.fresnel * (left * share), RayKind::mirror,
-          s.path.media, bsdf.roughness);
+    spawn(s, above_surface(s.surface.ng_world, s.b, reflect(s.d, frames.coat_n)), s.weight * (coat * coat_share),
+          RayKind::mirror, s.path.media, bsdf.clearcoat_roughness);
+    spawn(s, above_surface(s.surface.ng_world, s.b, reflect(s.d, s.n)), s.weight * passing.fresnel * (left * share),
+          RayKind::mirror, s.path.media, bsdf.roughness);
     spawn_transmitted(s, through * (left * bsdf.transmission * (1 - bsdf.metallic)), passing, bsdf.roughness);
   }
 
@@ -290,36 +353,25 @@ class Whitted {
   /// have no diffuse light to be seen by.
   [[nodiscard]] Rgb rough_reflection(const Shading& s, const MetallicRoughnessBsdf& bsdf) const {
     if (!scene_.environment) return bsdf.base_color * bsdf.metallic * scene_.ambient;
-    return specular_albedo(bsdf, std::max(0.0f, dot(s.n, s.b))) * blurred(reflect(s.d, s.n), bsdf.roughness);
-  }
-
-  [[nodiscard]] Rgb blurred(const Vec3f& direction, float roughness) const {
-    return scene_.environment ? environment_radiance(*scene_.environment, direction, roughness) : scene_.ambient;
+    return specular_albedo(bsdf, std::max(0.0f, dot(s.n, s.b))) * blurred(scene_, reflect(s.d, s.n), bsdf.roughness);
   }
 
   [[nodiscard]] LayerFrames layer_frames(const Shading& s, const MetallicRoughnessBsdf& bsdf) const {
     LayerFrames frames{ShadingFrame{{}, {}, s.n}, s.n};
     if (bsdf.clearcoat > 0) {
       const Clearcoat& coat = s.material.clearcoat;
-      const Vec3f n = shading_normal(s.surface, coat.normal_texture, coat.normal_scale);
+      const Vec3f n = shading_normal(s.surface, coat.normal_texture, coat.normal_scale, table_);
       frames.coat_n = dot(n, s.b) < 0 ? -n : n;
     }
     if (bsdf.anisotropy > 0 && has_tangent(s.surface)) {
       const float angle = anisotropy_angle(s.material, table_, s.surface.inputs());
-      const Vec3f along = world_from_tangent(s.surface, {std::cos(angle), std::sin(angle), 0});
+      const Vec3f along = world_from_tangent(s.surface, Vec3f{std::cos(angle), std::sin(angle), 0});
       frames.base.t = normalize(along - s.n * dot(s.n, along));
       frames.base.b = cross(s.n, frames.base.t);
     } else if (bsdf.anisotropy > 0) {
       frames.base = frame_about(s.n);
     }
     return frames;
-  }
-
-  /// A bumped normal may send the mirror ray below the surface: turned back to the side that is seen.
-  static Vec3f above_surface(const Shading& s, const Vec3f& mirrored) {
-    const Vec3f ng = dot(s.surface.ng_world, s.b) < 0 ? -s.surface.ng_world : s.surface.ng_world;
-    const float below = dot(mirrored, ng);
-    return below < 0 ? normalize(mirrored - (2 * below) * ng) : mirrored;
   }
 
   /// Specular light at the base: what is reflected, and where the rest goes.
@@ -363,17 +415,27 @@ class Whitted {
   void spawn(const Shading& s, const Vec3f& direction, const Rgb& weight, RayKind kind, const Media& media,
              float roughness = 0) {
     if (!(max_component(weight) > 0)) return;
-    const float blur = std::min(1.0f, std::hypot(s.path.roughness, roughness));
-    spawn_as(s, direction, {s.path.pixel, weight, uint16_t(s.path.depth + 1), kind, media, s.cone, blur});
+    spawn_as(s, direction, next_path(s.path, weight, kind, media, s.cone, roughness));
+  }
+
+  /// One deeper than `path`, from a surface of that roughness.
+  static Path next_path(const Path& path, const Rgb& weight, RayKind kind, const Media& media, const Cone& cone,
+                        float roughness) {
+    const float blur = std::min(1.0f, std::sqrt(path.roughness * path.roughness + roughness * roughness));
+    return {path.pixel, weight, uint16_t(path.depth + 1), kind, media, cone, blur};
+  }
+
+  [[nodiscard]] SpawnOutcome outcome_of(const Path& path) const {
+    const float largest = max_component(path.weight);
+    if (int(path.depth) > options_.max_depth) return SpawnOutcome::depth_limit;
+    return largest >= options_.min_weight && largest > 0 ? SpawnOutcome::traced : SpawnOutcome::weight_limit;
   }
 
   void spawn_as(const Shading& s, const Vec3f& direction, const Path& path) {
-    const float largest = max_component(path.weight);
-    const bool deep = int(path.depth) > options_.max_depth;
-    if (deep || !(largest >= options_.min_weight) || !(largest > 0))
-      return tell_spawn(s, direction, path, deep ? SpawnOutcome::depth_limit : SpawnOutcome::weight_limit);
-    arena_.pending.push({spawn_origin(s.surface, direction), normalize(direction)}, path);
-    tell_spawn(s, direction, path, SpawnOutcome::traced);
+    const SpawnOutcome outcome = outcome_of(path);
+    if (outcome == SpawnOutcome::traced)
+      arena_.pending.push({spawn_origin(s.surface, direction), normalize(direction)}, path);
+    tell_spawn(s, direction, path, outcome);
   }
 
   void tell_spawn(const Shading& s, const Vec3f& direction, const Path& path, SpawnOutcome outcome) {
@@ -397,53 +459,30 @@ class Whitted {
   /// `light`: that of the index, as it is at the ray's time.
   template <class Bsdf, class Reflected>
   void add_light(const Shading& s, uint32_t index, const Light& light, const Bsdf& bsdf, const Reflected& reflected) {
-    Vec3f to_light;
-    float distance = std::numeric_limits<float>::infinity();
-    const Rgb arriving = light_at(light, s.surface.p_world, to_light, distance);
-    if (!(max_component(arriving) > 0)) return;
-    const Rgb light_to_eye = s.weight * arriving * reflected(bsdf, to_light);
+    const ArrivingLight<float> arriving = light_at<float>(light, s.surface.p_world);
+    if (!(max_component(arriving.radiance) > 0)) return;
+    const Vec3f& to_light = arriving.to_light;
+    const Rgb light_to_eye = s.weight * arriving.radiance * reflected(bsdf, to_light);
     if (!(max_component(light_to_eye) > 0)) return;
-    const size_t i = arena_.shadow.size();
-    arena_.shadow.resize(i + 1), arena_.shadow_pixel.resize(i + 1), arena_.shadow_light.resize(i + 1);
     Rayf ray{spawn_origin(s.surface, to_light), to_light};
-    if (std::isfinite(distance)) {
+    if (light.kind != Light::Kind::directional) {
       // From the shifted origin to the light itself, in units of the segment.
-      const Vec3f segment = Vec3f(light.p_world - Vec3d(ray.origin));
-      ray.direction = segment, ray.t_max = 1;
+      ray.direction = Vec3f(light.p_world - Vec3d(ray.origin)), ray.t_max = 1;
     }
-    arena_.shadow.set(i, ray);
-    arena_.shadow_pixel[i] = s.path.pixel, arena_.shadow_light[i] = light_to_eye;
     tell([&](TraceObserver& observer) {
       const Rgb all = reflected(bsdf, to_light), specular = reflected(without_diffuse(bsdf), to_light);
-      observer.ask({index, ray, distance, arriving, s.weight, all - specular, specular});
+      observer.ask({index, ray, arriving.distance, arriving.radiance, s.weight, all - specular, specular});
     });
-    if (i + 1 == kShadowLimit) trace_shadows(Coherence::incoherent);
+    push_shadow(ray, s.path.pixel, light_to_eye);
   }
 
-  /// Colour x intensity x attenuation at a point (KHR_lights_punctual's formulas), and where the light is seen from
-  /// there.
-  static Rgb light_at(const Light& light, const Vec3d& p_world, Vec3f& to_light, float& distance) {
-    if (light.kind == Light::Kind::directional) {
-      to_light = Vec3f(-light.direction_world);
-      return light.intensity;
-    }
-    const Vec3d segment = light.p_world - p_world;
-    const double squared = dot(segment, segment);
-    if (!(squared > 0)) return Rgb(0.0f);
-    distance = float(std::sqrt(squared));
-    to_light = Vec3f(segment / std::sqrt(squared));
-    float factor = 1;
-    if (light.attenuated) {
-      factor = float(1 / squared);
-      if (light.range > 0) factor *= std::clamp(1 - std::pow(distance / light.range, 4.0f), 0.0f, 1.0f);
-    }
-    if (light.kind == Light::Kind::spot) {
-      const float scale = 1 / std::max(0.001f, light.cos_inner - light.cos_outer);
-      const float angular =
-          std::clamp((float(-dot(light.direction_world, Vec3d(to_light))) - light.cos_outer) * scale, 0.0f, 1.0f);
-      factor *= angular * angular;
-    }
-    return light.intensity * factor;
+  /// `light`: what the pixel gets of it where nothing is in the way.
+  void push_shadow(const Rayf& ray, uint32_t pixel, const Rgb& light) {
+    const size_t i = arena_.shadow.size();
+    arena_.shadow.resize(i + 1), arena_.shadow_pixel.resize(i + 1), arena_.shadow_light.resize(i + 1);
+    arena_.shadow.set(i, ray);
+    arena_.shadow_pixel[i] = pixel, arena_.shadow_light[i] = light;
+    if (i + 1 == kShadowLimit) trace_shadows(Coherence::incoherent);
   }
 
   void trace_shadows(Coherence coherence) {
@@ -465,6 +504,7 @@ class Whitted {
 
   const Scene& scene_;
   const AcceleratedScene& accelerated_;
+  const ShadingGroups& groups_;
   const RenderOptions& options_;
   WaveArena& arena_;
   Rgb* radiance_;
@@ -474,12 +514,12 @@ class Whitted {
 
 }  // namespace
 
-void trace_whitted(const Scene& scene, const AcceleratedScene& accelerated, const RenderOptions& options,
-                   WaveArena& arena, Rgb* radiance, float* background) {
+void trace_whitted(const Scene& scene, const AcceleratedScene& accelerated, const ShadingGroups& groups,
+                   const RenderOptions& options, WaveArena& arena, Rgb* radiance, float* background) {
   if (arena.observer)
-    Whitted<true>(scene, accelerated, options, arena, radiance, background).run();
+    Whitted<true>(scene, accelerated, groups, options, arena, radiance, background).run();
   else
-    Whitted<false>(scene, accelerated, options, arena, radiance, background).run();
+    Whitted<false>(scene, accelerated, groups, options, arena, radiance, background).run();
 }
 
 }  // namespace alhazen

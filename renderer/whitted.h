@@ -4,6 +4,7 @@
 #include <array>
 
 #include "renderer/camera_ray.h"
+#include "renderer/lane_shading.h"
 #include "renderer/media.h"
 #include "renderer/phase_clock.h"
 #include "renderer/render.h"
@@ -49,6 +50,9 @@ struct WaveArena {
   RayWave shadow;
   Lanes<uint32_t> shadow_pixel;
   Lanes<Rgb> shadow_light, visible;
+  Lanes<uint32_t> group_of_hit, group_ends, sorted;  // the wave's hits by shading group
+  LaneWork lane_work;
+  LaneLight lane_light;
   Lanes<float> time_of_pixel;              // of the shutter, of the samples at hand; of no elements where nothing moves
   std::array<uint64_t, 4> rays_by_kind{};  // by RayKind
   uint64_t shadow_rays = 0;
@@ -60,7 +64,7 @@ struct WaveArena {
 /// Follows the rays in `arena.pending` to their ends and adds their light to `radiance`, one value for each pixel of
 /// the cell. With `options.transparent`, the background's colour is left out where the view meets it, and its share of
 /// the pixel is added to `background` instead.
-void trace_whitted(const Scene& scene, const AcceleratedScene& accelerated, const RenderOptions& options,
-                   WaveArena& arena, Rgb* radiance, float* background);
+void trace_whitted(const Scene& scene, const AcceleratedScene& accelerated, const ShadingGroups& groups,
+                   const RenderOptions& options, WaveArena& arena, Rgb* radiance, float* background);
 
 }  // namespace alhazen

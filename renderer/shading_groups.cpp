@@ -1,0 +1,57 @@
+#include "renderer/shading_groups.h"
+
+#include <map>
+
+#include "renderer/media.h"
+
+namespace alhazen {
+namespace {
+
+/// Materials whose shading is a straight line: what layers, bodies and coverage add is shaded one by one.
+bool allows_lanes(const Material& m) {
+  if (m.alpha_mode == AlphaMode::blend || bounds_body(m)) return false;
+  switch (m.model) {
+    case ShadingModel::phong:
+      return true;
+    case ShadingModel::metallic_roughness:
+      return !(m.clearcoat.factor > 0 || max_component(m.sheen.color) > 0 || m.anisotropy.strength > 0 ||
+               m.iridescence.factor > 0 || m.diffuse_transmission.factor > 0 || m.transmission > 0);
+    case ShadingModel::unlit:
+    case ShadingModel::measured:
+      return false;
+  }
+  return false;
+}
+
+bool has_textures(const Material& m) {
+  if (m.emissive_texture || m.normal_texture) return true;
+  if (m.model == ShadingModel::phong) return m.phong.ambient_texture || m.phong.diffuse_texture;
+  return m.base_color_texture || m.metallic_roughness_texture || m.occlusion_texture || m.specular_texture ||
+         m.specular_color_texture || m.transmission_texture;
+}
+
+}  // namespace
+
+ShadingGroups::ShadingGroups(const Scene& scene) {
+  std::map<ShadingGroup, uint32_t> known;
+  const auto group_of = [&](uint32_t material, Attributes has, bool on_shapes) {
+    const Material& m = scene.materials[material];
+    if (!allows_lanes(m)) return uint32_t{0};
+    const bool textures = has_textures(m);
+    if (!textures) has.uv_sets = 0;
+    if (!m.normal_texture) has.tangents = false;
+    const ShadingGroup group{material, true, textures, on_shapes, has};
+    const auto [place, is_new] = known.try_emplace(group, uint32_t(groups_.size()));
+    if (is_new) groups_.push_back(group);
+    return place->second;
+  };
+  for (const Mesh& mesh : scene.geometry.meshes) {
+    first_part_.push_back(uint32_t(group_of_part_.size()));
+    for (const TriangleMesh& part : mesh.parts)
+      group_of_part_.push_back(part.polygon_normals.empty() ? group_of(part.material, attributes(part), false) : 0);
+  }
+  for (const ShapeInstance& shape : scene.geometry.shape_instances)
+    group_of_shape_.push_back(group_of(shape.material, {}, true));
+}
+
+}  // namespace alhazen
