@@ -17,6 +17,7 @@ constexpr size_t kShadowLimit = 8192;  // shadow rays gathered before they are t
 
 /// One hit being shaded.
 struct Shading {
+  const HitIds& ids;
   const SurfacePoint& surface;
   const Material& material;
   Vec3f d, b, n;      // ray direction, back along it, shading normal turned towards b; unit length
@@ -140,7 +141,7 @@ class Whitted {
     }
     const HitIds ids{hits.object[i], hits.part[i], hits.primitive[i]};
     SurfacePoint surface = surface_point(scene_, ray, ids, hits.t[i], hits.u[i], hits.v[i], time_of(path.pixel));
-    const Cone cone{path.cone.width_at(hits.t[i]), path.cone.spread};
+    const Cone cone = path.cone.at(hits.t[i]);
     // A slanted surface shows more of itself along one axis: the mean of both, for mip levels have no direction.
     surface.footprint = cone.width / std::sqrt(std::max(1e-3f, std::abs(dot(surface.ng_world, ray.direction))));
     const Material& material = scene_.materials[surface.material];
@@ -151,7 +152,7 @@ class Whitted {
     Vec3f n = shading_normal(surface, material.normal_texture, material.normal_scale);
     const bool enters = dot(n, ray.direction) < 0;
     if (!enters) n = -n;
-    Shading s{surface, material, ray.direction, -ray.direction, n, enters, arriving * alpha, path, cone, {}};
+    Shading s{ids, surface, material, ray.direction, -ray.direction, n, enters, arriving * alpha, path, cone, {}};
     tell([&](TraceObserver& observer) { observer.hit({ids, hits.t[i], surface, n, enters, alpha, arriving}); });
     if (bounds_body(material)) {
       s.boundary =
@@ -234,7 +235,8 @@ class Whitted {
     const PhongRays rays = ray_weights(bsdf, f, passes);
     spawn(s, reflect(s.d, s.n), s.weight * rays.mirrored, RayKind::mirror, s.path.media);
     if (passes)
-      spawn(s, refracted, s.weight * rays.refracted, RayKind::refracted, body ? s.boundary.after : s.path.media);
+      spawn(s, refracted, s.weight * rays.refracted, RayKind::refracted, body ? s.boundary.after : s.path.media, 0,
+            eta);
   }
 
   static Interface phong_interface(const Shading& s, const PhongBsdf& bsdf, float fresnel, bool total) {
@@ -328,15 +330,17 @@ class Whitted {
     bool passes = true;
     Vec3f direction;
     Media media;
+    float eta = 1;
   };
 
   /// For green light, or white light that is not dispersed.
   static Transmission transmission(const Shading& s, const MetallicRoughnessBsdf& bsdf) {
     const float cos_view = std::max(0.0f, dot(s.n, s.b));
     // Thin-walled: in and out at once.
-    if (!bounds_body(s.material)) return {specular_reflectance(bsdf, cos_view), true, s.d, s.path.media};
+    if (!bounds_body(s.material)) return {specular_reflectance(bsdf, cos_view), true, s.d, s.path.media, 1};
     Transmission t{.fresnel = Rgb{1.0f}, .passes = false, .direction = s.d, .media = s.boundary.after};
-    t.passes = refract(s.d, s.n, s.boundary.ior_before.g / s.boundary.ior_after.g, t.direction);
+    t.eta = s.boundary.ior_before.g / s.boundary.ior_after.g;
+    t.passes = refract(s.d, s.n, t.eta, t.direction);
     // Schlick's cosine is that on the side of the lower index.
     const bool to_thinner = s.boundary.ior_before.g > s.boundary.ior_after.g;
     if (t.passes) t.fresnel = specular_reflectance(bsdf, to_thinner ? -dot(t.direction, s.n) : cos_view);
@@ -346,25 +350,35 @@ class Whitted {
   void spawn_transmitted(const Shading& s, const Rgb& share, const Transmission& passing, float roughness) {
     const Rgb &before = s.boundary.ior_before, &after = s.boundary.ior_after;
     if (before.r == before.b && after.r == after.b) {
-      if (passing.passes) spawn(s, passing.direction, s.weight * share, RayKind::refracted, passing.media, roughness);
+      if (passing.passes)
+        spawn(s, passing.direction, s.weight * share, RayKind::refracted, passing.media, roughness, passing.eta);
       return;
     }
     // A ray for each of red, green and blue; the colours of a ray that was split before go on alone.
     const auto spawn_color = [&](float eta, const Rgb& color) {
       Vec3f refracted;
       if (refract(s.d, s.n, eta, refracted))
-        spawn(s, refracted, s.weight * share * color, RayKind::refracted, passing.media, roughness);
+        spawn(s, refracted, s.weight * share * color, RayKind::refracted, passing.media, roughness, eta);
     };
     spawn_color(before.r / after.r, {1, 0, 0});
     spawn_color(before.g / after.g, {0, 1, 0});
     spawn_color(before.b / after.b, {0, 0, 1});
   }
 
+  /// `eta`: the index before the surface to that beyond it, of a ray that is refracted.
   void spawn(const Shading& s, const Vec3f& direction, const Rgb& weight, RayKind kind, const Media& media,
-             float roughness = 0) {
+             float roughness = 0, float eta = 1) {
     if (!(max_component(weight) > 0)) return;
     const float blur = std::min(1.0f, std::hypot(s.path.roughness, roughness));
-    spawn_as(s, direction, {s.path.pixel, weight, uint16_t(s.path.depth + 1), kind, media, s.cone, blur});
+    const Cone cone = cone_of(s, direction, eta);
+    spawn_as(s, direction, {s.path.pixel, weight, uint16_t(s.path.depth + 1), kind, media, cone, blur});
+  }
+
+  /// Cones serve textures alone, so that a scene without any does not pay for the curvature.
+  [[nodiscard]] Cone cone_of(const Shading& s, const Vec3f& direction, float eta) const {
+    if (scene_.images.empty()) return s.cone;
+    const float outward = mean_curvature(scene_, s.ids, s.surface, s.cone.width, time_of(s.path.pixel));
+    return deflected(s.cone, s.d, s.n, direction, eta, dot(s.surface.ns_world, s.d) < 0 ? outward : -outward);
   }
 
   void spawn_as(const Shading& s, const Vec3f& direction, const Path& path) {
