@@ -1,6 +1,7 @@
 #include "loaders/image_ktx.h"
 
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 
@@ -28,6 +29,15 @@ int channels_of(uint32_t vk_format) {
   throw std::runtime_error("KTX 2 in the format " + std::to_string(vk_format) + ", which is not unpacked here");
 }
 
+/// libktx makes its tables at the first call behind a flag that is no lock, while images are decoded in parallel: until
+/// one call has succeeded, the others wait.
+void transcode(ktxTexture2* texture) {
+  static std::once_flag first;
+  bool done = false;
+  std::call_once(first, [&] { check(ktxTexture2_TranscodeBasis(texture, KTX_TTF_RGBA32, 0)), done = true; });
+  if (!done) check(ktxTexture2_TranscodeBasis(texture, KTX_TTF_RGBA32, 0));
+}
+
 }  // namespace
 
 TextureImage decode_ktx(std::span<const uint8_t> file) {
@@ -38,7 +48,7 @@ TextureImage decode_ktx(std::span<const uint8_t> file) {
   if (texture->baseWidth > kLargestSide || texture->baseHeight > kLargestSide)
     throw std::runtime_error("more than 65536 pixels a side");
   check(ktxTexture_LoadImageData(ktxTexture(texture.get()), nullptr, 0));
-  if (ktxTexture2_NeedsTranscoding(texture.get())) check(ktxTexture2_TranscodeBasis(texture.get(), KTX_TTF_RGBA32, 0));
+  if (ktxTexture2_NeedsTranscoding(texture.get())) transcode(texture.get());
   TextureImage image;
   image.width = int(texture->baseWidth), image.height = int(texture->baseHeight);
   image.channels = channels_of(texture->vkFormat);

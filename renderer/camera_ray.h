@@ -32,10 +32,22 @@ struct Film {
 /// The cone that a ray stands for: metres across where it starts, and how much wider it gets with each (Akenine-Moller
 /// et al., "Texture Level of Detail Strategies for Real-Time Ray Tracing", Ray Tracing Gems, chapter 20).
 struct Cone {
-  float width = 0, spread = 0;
+  float width = 0, spread = 0;  // the spread is below 0 where light converges
 
-  [[nodiscard]] float width_at(float distance) const { return width + spread * distance; }
+  /// The cone further on; beyond a focus its sides have changed places.
+  [[nodiscard]] Cone at(float distance) const {
+    const float w = width + spread * distance;
+    return w < 0 ? Cone{-w, -spread} : Cone{w, spread};
+  }
 };
+
+/// The cone of `direction`, mirrored (`eta` 1) or refracted from `d` into where light is 1 / `eta` times as slow, at a
+/// surface with unit normal n towards where d comes from, and of that mean curvature, per metre, positive where it
+/// bulges that way. Coddington's equations give a spread along the plane of incidence and one across; this is between
+/// them, equal to both where d is along n (for curvature in ray cones: Akenine-Moller et al., "Improved Shader and
+/// Texture Level of Detail Using Ray Cones", JCGT 10(1), 2021).
+[[nodiscard]] Cone deflected(const Cone& cone, const Vec3f& d, const Vec3f& n, const Vec3f& direction, float eta,
+                             float curvature);
 
 /// Of one of `samples` rays through a pixel.
 [[nodiscard]] Cone camera_cone(const Camera& camera, int height, int samples);

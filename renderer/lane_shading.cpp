@@ -66,6 +66,7 @@ void shade_phong(const Scene& scene, const BasicPhongBsdf<F>& bsdf, const Hit& h
   const bool transmits = max_component(bsdf.transmission) > 0;
   if (!transmits && !(max_component(bsdf.reflection) > 0)) return;
   const F eta = select(hit.enters, F(1 / bsdf.ior), F(bsdf.ior));
+  out.eta.store(eta);
   Vec3<F> refracted;
   const Mask passes = transmits ? refract(hit.d, hit.n, eta, refracted) : Mask(false);
   const F f = bsdf.fresnel ? fresnel_dielectric(smaller(F(1), dot(hit.n, hit.b)), eta) : F(0);
@@ -134,6 +135,9 @@ void shade_lanes(const Scene& scene, const ShadingGroup& group, const LaneWork& 
     shade_phong(scene, phong_bsdf(material, table, inputs), hit, out);
   else
     shade_metallic_roughness(scene, base_layer(material, table, inputs, material.ior), hit, out);
+  if ((out.mirror.lanes | out.refracted.lanes) == 0) return;
+  out.p_world.store(hit.surface.p_world), out.ng_world.store(hit.surface.ng_world);
+  out.ns_world.store(hit.surface.ns_world), out.n.store(hit.n);
 }
 
 }  // namespace alhazen

@@ -28,6 +28,10 @@ struct LaneLight {
   RgbArray<ShadingLanes> emission, ambient;  // weighed
   std::vector<LaneRays> shadow;              // by light
   LaneRays mirror, refracted;
+  // Where they leave from: what widens their cones. `n`: the normal that shades, towards where the ray came from.
+  Vec3Array<DoubleOf<ShadingLanes>> p_world;
+  Vec3Array<ShadingLanes> ng_world, ns_world, n;
+  LaneArray<ShadingLanes> eta;
   LaneArray<ShadingLanes> roughness;  // of the surface
 };
 

@@ -7,6 +7,7 @@
 
 #include "accel/line_map.h"
 #include "accel/posed.h"
+#include "materials/microfacet.h"
 
 namespace alhazen {
 namespace {
@@ -183,6 +184,45 @@ SurfacePoint shape_point(const Scene& scene, uint32_t object, int face, const Af
   return s;
 }
 
+/// Half the divergence of the normals, which are linear between the corners.
+double mesh_curvature(const Scene& scene, const HitIds& ids, float time) {
+  const Geometry& geometry = scene.geometry;
+  const uint32_t mesh = geometry.mesh_instances[ids.object].mesh;
+  const TriangleMesh& part = geometry.meshes[mesh].parts[ids.part];
+  if (part.normals.empty()) return 0;
+  const PosedPart posed(part, ids.part, track_of_mesh(geometry, mesh), time);
+  const Affine3d m = world_from_object(geometry, ids.object, time);
+  const auto& corner = part.triangles[ids.primitive];
+  std::array<Vec3d, 3> p, n;
+  for (size_t k = 0; k < 3; ++k) {
+    p[k] = transform_point(m, Vec3d(posed.position(corner[k])));
+    n[k] = normalize(transform_normal(m, Vec3d(posed.normal(corner[k]))));
+  }
+  const Vec3d e1 = p[1] - p[0], e2 = p[2] - p[0], across = cross(e1, e2);
+  // Per unit of each edge, times the vector that is 1 along it and 0 along the other.
+  const double divergence = dot(n[1] - n[0], cross(e2, across)) + dot(n[2] - n[0], cross(across, e1));
+  return divergence / (2 * dot(across, across));
+}
+
+/// From the normals at steps to two sides, put back on the surface.
+double shape_curvature(const Scene& scene, const HitIds& ids, const SurfacePoint& point, double width, float time) {
+  const Affine3d m = world_from_object(scene.geometry, ids.object, time), object_from_world = inverse(m);
+  const Shape& shape = scene.geometry.shapes[shape_instance(scene.geometry, ids.object).shape];
+  const int face = int(ids.part);
+  const double step = std::max(width, 1e-6 * max_component(abs(point.p_world)));  // well above the rounding of double
+  const ShadingFrame frame = frame_about(point.ng_world);
+  const auto normal_near = [&](const Vec3d& p_world) {
+    const Vec3d near_object = transform_point(object_from_world, p_world);
+    return normalize(transform_normal(
+        m, std::visit([&](const auto& s) { return normal(s, project(s, near_object, face), face); }, shape)));
+  };
+  const Vec3d n = normal_near(point.p_world);
+  const auto turn = [&](const Vec3d& along) {
+    return dot(normal_near(point.p_world + along * step) - n, along) / step;
+  };
+  return (turn(Vec3d(frame.t)) + turn(Vec3d(frame.b))) / 2;
+}
+
 }  // namespace
 
 SurfaceIds surface_ids(const Scene& scene, const HitIds& hit) noexcept {
@@ -325,6 +365,14 @@ BasicSurfacePoint<F> surface_points(const Scene& scene, const LaneHits& hits, co
   else
     set_mesh_points(scene, hits, has, has_textures, s);
   return s;
+}
+
+float mean_curvature(const Scene& scene, const HitIds& ids, const SurfacePoint& point, float width,
+                     float time) noexcept {
+  const double curvature = is_shape(scene.geometry, ids.object)
+                               ? shape_curvature(scene, ids, point, double(width), time)
+                               : mesh_curvature(scene, ids, time);
+  return std::isfinite(curvature) ? float(curvature) : 0;
 }
 
 SurfacePoint surface_point(const Scene& scene, const Crossing& crossing) noexcept {

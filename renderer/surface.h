@@ -71,6 +71,12 @@ struct LaneHits {
 [[nodiscard]] BasicSurfacePoint<ShadingLanes> surface_points(const Scene& scene, const LaneHits& hits,
                                                              const Attributes& has, bool has_textures) noexcept;
 
+/// The mean curvature at a point that surface_point gave, per metre: half of how fast the normal turns outward as one
+/// goes along the surface, summed over two perpendicular directions; below 0 in hollows. Triangles have that of their
+/// vertices' normals, shapes that over `width` metres. 0 where there is none to be had.
+[[nodiscard]] float mean_curvature(const Scene& scene, const HitIds& ids, const SurfacePoint& point, float width,
+                                   float time = 0) noexcept;
+
 /// Only what texture look-ups need, for crossings met in traversal.
 [[nodiscard]] SurfacePoint surface_point(const Scene& scene, const Crossing& crossing) noexcept;
 

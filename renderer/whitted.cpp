@@ -22,6 +22,7 @@ constexpr size_t kShadowLimit = 8192;  // shadow rays gathered before they are t
 
 /// One hit being shaded.
 struct Shading {
+  const HitIds& ids;
   const SurfacePoint& surface;
   const Material& material;
   Vec3f d, b, n;      // ray direction, back along it, shading normal turned towards b; unit length
@@ -174,7 +175,7 @@ class Whitted {
       work.hits.origin.set(k, rays.origin.get(i)), work.hits.direction.set(k, rays.direction.get(i));
       work.hits.t[k] = arena_.hits.t[i], work.hits.u[k] = arena_.hits.u[i], work.hits.v[k] = arena_.hits.v[i];
       work.weight.set(k, arriving_weight(path, arena_.hits.t[i]));
-      work.cone_width[k] = path.cone.width_at(arena_.hits.t[i]);
+      work.cone_width[k] = path.cone.at(arena_.hits.t[i]).width;
     }
     LaneLight& light = arena_.lane_light;
     shade_lanes(scene_, group, work, light);
@@ -186,14 +187,19 @@ class Whitted {
         if (shadow.lanes >> k & 1)
           push_shadow({shadow.origin.get(k), shadow.direction.get(k), 0, shadow.t_max[k]}, path.pixel,
                       shadow.weight.get(k));
-      const Cone cone{work.cone_width[k], path.cone.spread};
-      const auto spawned = [&](const LaneRays& spawned_rays, RayKind kind) {
+      const auto spawned = [&](const LaneRays& spawned_rays, RayKind kind, float eta) {
         if (!(spawned_rays.lanes >> k & 1)) return;
+        const Vec3f direction = spawned_rays.direction.get(k);
+        SurfacePoint surface;
+        surface.p_world = light.p_world.get(k), surface.ng_world = light.ng_world.get(k);
+        surface.ns_world = light.ns_world.get(k);
+        const Cone cone = cone_of(path, work.hits.ids[k], surface, path.cone.at(work.hits.t[k]),
+                                  work.hits.direction.get(k), light.n.get(k), direction, eta);
         const Path next = next_path(path, spawned_rays.weight.get(k), kind, path.media, cone, light.roughness[k]);
         if (outcome_of(next) == SpawnOutcome::traced)
-          arena_.pending.push({spawned_rays.origin.get(k), spawned_rays.direction.get(k)}, next);
+          arena_.pending.push({spawned_rays.origin.get(k), direction}, next);
       };
-      spawned(light.mirror, RayKind::mirror), spawned(light.refracted, RayKind::refracted);
+      spawned(light.mirror, RayKind::mirror, 1), spawned(light.refracted, RayKind::refracted, light.eta[k]);
     }
   }
 
@@ -214,7 +220,7 @@ class Whitted {
     }
     const HitIds ids{hits.object[i], hits.part[i], hits.primitive[i]};
     SurfacePoint surface = surface_point(scene_, ray, ids, hits.t[i], hits.u[i], hits.v[i], time_of(path.pixel));
-    const Cone cone{path.cone.width_at(hits.t[i]), path.cone.spread};
+    const Cone cone = path.cone.at(hits.t[i]);
     surface.footprint = footprint(cone.width, surface.ng_world, ray.direction);
     const Material& material = scene_.materials[surface.material];
     const SurfaceInputs inputs = surface.inputs();
@@ -223,7 +229,7 @@ class Whitted {
     Vec3f n = shading_normal(surface, material.normal_texture, material.normal_scale, table_);
     const bool enters = dot(n, ray.direction) < 0;
     if (!enters) n = -n;
-    Shading s{surface, material, ray.direction, -ray.direction, n, enters, arriving * alpha, path, cone, {}};
+    Shading s{ids, surface, material, ray.direction, -ray.direction, n, enters, arriving * alpha, path, cone, {}};
     tell([&](TraceObserver& observer) { observer.hit({ids, hits.t[i], surface, n, enters, alpha, arriving}); });
     if (bounds_body(material)) {
       s.boundary =
@@ -295,7 +301,8 @@ class Whitted {
     const PhongRays rays = ray_weights(bsdf, f, passes);
     spawn(s, reflect(s.d, s.n), s.weight * rays.mirrored, RayKind::mirror, s.path.media);
     if (passes)
-      spawn(s, refracted, s.weight * rays.refracted, RayKind::refracted, body ? s.boundary.after : s.path.media);
+      spawn(s, refracted, s.weight * rays.refracted, RayKind::refracted, body ? s.boundary.after : s.path.media, 0,
+            eta);
   }
 
   static Interface phong_interface(const Shading& s, const PhongBsdf& bsdf, float fresnel, bool total) {
@@ -380,15 +387,17 @@ class Whitted {
     bool passes = true;
     Vec3f direction;
     Media media;
+    float eta = 1;
   };
 
   /// For green light, or white light that is not dispersed.
   static Transmission transmission(const Shading& s, const MetallicRoughnessBsdf& bsdf) {
     const float cos_view = std::max(0.0f, dot(s.n, s.b));
     // Thin-walled: in and out at once.
-    if (!bounds_body(s.material)) return {specular_reflectance(bsdf, cos_view), true, s.d, s.path.media};
+    if (!bounds_body(s.material)) return {specular_reflectance(bsdf, cos_view), true, s.d, s.path.media, 1};
     Transmission t{.fresnel = Rgb{1.0f}, .passes = false, .direction = s.d, .media = s.boundary.after};
-    t.passes = refract(s.d, s.n, s.boundary.ior_before.g / s.boundary.ior_after.g, t.direction);
+    t.eta = s.boundary.ior_before.g / s.boundary.ior_after.g;
+    t.passes = refract(s.d, s.n, t.eta, t.direction);
     // Schlick's cosine is that on the side of the lower index.
     const bool to_thinner = s.boundary.ior_before.g > s.boundary.ior_after.g;
     if (t.passes) t.fresnel = specular_reflectance(bsdf, to_thinner ? -dot(t.direction, s.n) : cos_view);
@@ -398,24 +407,35 @@ class Whitted {
   void spawn_transmitted(const Shading& s, const Rgb& share, const Transmission& passing, float roughness) {
     const Rgb &before = s.boundary.ior_before, &after = s.boundary.ior_after;
     if (before.r == before.b && after.r == after.b) {
-      if (passing.passes) spawn(s, passing.direction, s.weight * share, RayKind::refracted, passing.media, roughness);
+      if (passing.passes)
+        spawn(s, passing.direction, s.weight * share, RayKind::refracted, passing.media, roughness, passing.eta);
       return;
     }
     // A ray for each of red, green and blue; the colours of a ray that was split before go on alone.
     const auto spawn_color = [&](float eta, const Rgb& color) {
       Vec3f refracted;
       if (refract(s.d, s.n, eta, refracted))
-        spawn(s, refracted, s.weight * share * color, RayKind::refracted, passing.media, roughness);
+        spawn(s, refracted, s.weight * share * color, RayKind::refracted, passing.media, roughness, eta);
     };
     spawn_color(before.r / after.r, {1, 0, 0});
     spawn_color(before.g / after.g, {0, 1, 0});
     spawn_color(before.b / after.b, {0, 0, 1});
   }
 
+  /// `eta`: the index before the surface to that beyond it, of a ray that is refracted.
   void spawn(const Shading& s, const Vec3f& direction, const Rgb& weight, RayKind kind, const Media& media,
-             float roughness = 0) {
+             float roughness = 0, float eta = 1) {
     if (!(max_component(weight) > 0)) return;
-    spawn_as(s, direction, next_path(s.path, weight, kind, media, s.cone, roughness));
+    const Cone cone = cone_of(s.path, s.ids, s.surface, s.cone, s.d, s.n, normalize(direction), eta);
+    spawn_as(s, direction, next_path(s.path, weight, kind, media, cone, roughness));
+  }
+
+  /// Cones serve textures alone, so that a scene without any does not pay for the curvature.
+  [[nodiscard]] Cone cone_of(const Path& path, const HitIds& ids, const SurfacePoint& surface, const Cone& cone,
+                             const Vec3f& d, const Vec3f& n, const Vec3f& direction, float eta) const {
+    if (scene_.images.empty()) return cone;
+    const float outward = mean_curvature(scene_, ids, surface, cone.width, time_of(path.pixel));
+    return deflected(cone, d, n, direction, eta, dot(surface.ns_world, d) < 0 ? outward : -outward);
   }
 
   /// One deeper than `path`, from a surface of that roughness.

@@ -76,10 +76,10 @@ TEST(Cone, IsAsWideAsAPixel) {
   Camera camera;
   camera.yfov = 1;
   const Cone cone = camera_cone(camera, 100, 1);
-  EXPECT_NEAR(cone.width_at(2), 2 * 2 * std::tan(0.5) / 100, 1e-6);
+  EXPECT_NEAR(cone.at(2).width, 2 * 2 * std::tan(0.5) / 100, 1e-6);
   EXPECT_NEAR(camera_cone(camera, 100, 4).spread, cone.spread / 2, 1e-7f);
   camera.kind = Camera::Kind::orthographic, camera.ymag = 3;
-  EXPECT_NEAR(camera_cone(camera, 100, 1).width_at(1e6f), 0.06f, 1e-7f);
+  EXPECT_NEAR(camera_cone(camera, 100, 1).at(1e6f).width, 0.06f, 1e-7f);
 }
 
 }  // namespace
