@@ -2,6 +2,7 @@
 #pragma once
 
 #include "accel/reference/screen_boxes.h"
+#include "core/lane_vec.h"
 #include "core/ray.h"
 #include "renderer/scene.h"
 
@@ -16,12 +17,27 @@ struct Film {
   double step, center_x, center_y;  // a pixel's side at distance 1 (orthographic: in metres); the middle, in pixels
 };
 
-/// The ray through a film point (x, y), in pixels from the top left, in world space. Its direction has unit length.
+/// Origins and unit directions of the rays through film points (x, y), in pixels from the top left, in world space: of
+/// one point, or those of several lanes.
+template <class F>
+struct FilmRay {
+  Vec3<F> origin, direction;
+};
+template <class F>
+[[nodiscard]] FilmRay<F> film_ray(const Film& film, const DoubleOf<F>& x, const DoubleOf<F>& y) {
+  using D = DoubleOf<F>;
+  const auto all = [](const Vec3d& v) { return Vec3<D>(D(v.x), D(v.y), D(v.z)); };
+  const Affine3<D> m{all(film.world_from_camera.x), all(film.world_from_camera.y), all(film.world_from_camera.z),
+                     all(film.world_from_camera.origin)};
+  const D px = (x - D(film.center_x)) * D(film.step), py = (D(film.center_y) - y) * D(film.step);
+  if (!film.perspective) return {convert<F>(transform_point(m, Vec3<D>(px, py, D(0)))), convert<F>(-m.z)};
+  return {convert<F>(m.origin), convert<F>(normalize(transform_vector(m, Vec3<D>(px, py, D(-1)))))};
+}
+
+/// The ray through a film point.
 [[nodiscard]] inline Rayf camera_ray(const Film& film, double x, double y) {
-  const Affine3d& m = film.world_from_camera;
-  const Vec3d p{(x - film.center_x) * film.step, (film.center_y - y) * film.step, 0};
-  if (film.perspective) return {Vec3f(m.origin), Vec3f(normalize(transform_vector(m, p - Vec3d{0, 0, 1})))};
-  return {Vec3f(transform_point(m, p)), Vec3f(-m.z)};
+  const FilmRay<float> ray = film_ray<float>(film, x, y);
+  return {ray.origin, ray.direction};
 }
 
 /// The same, of a single ray.

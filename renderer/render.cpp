@@ -43,6 +43,10 @@ void push_camera_rays(const Camera& camera, const RenderOptions& options, const 
   PathWave& wave = arena.pending;
   arena.time_of_pixel.resize(moving ? size_t(kCellSize) * kCellSize : 0);
   wave.resize(size_t(cell.x1 - cell.x0) * size_t(cell.y1 - cell.y0));
+  using D = DoubleOf<ShadingLanes>;
+  constexpr size_t kLanes = kWidthOf<ShadingLanes>;
+  LaneArray<D> lane_x{}, lane_y{};
+  Vec3Array<ShadingLanes> origin, direction;
   size_t i = 0;
   const Film film(camera, options.width, options.height);
   const bool camera_moves = moving && !camera.track.empty();
@@ -58,8 +62,18 @@ void push_camera_rays(const Camera& camera, const RenderOptions& options, const 
     const auto film_then = [&] {
       return Film(at_time(camera.track, arena.time_of_pixel[pixel]), options.width, options.height);
     };
-    wave.rays.set(i, camera_ray(camera_moves ? film_then() : film, fx, fy));
     wave.paths[i] = {.pixel = pixel, .cone = cone};
+    if (camera_moves) {
+      wave.rays.set(i, camera_ray(film_then(), fx, fy));
+    } else {
+      lane_x[i % kLanes] = fx, lane_y[i % kLanes] = fy;
+      if ((i + 1) % kLanes == 0 || i + 1 == wave.size()) {
+        const FilmRay<ShadingLanes> rays = film_ray<ShadingLanes>(film, lane_x.load(), lane_y.load());
+        origin.store(rays.origin), direction.store(rays.direction);
+        for (size_t k = 0, first = i / kLanes * kLanes; first + k <= i; ++k)
+          wave.rays.set(first + k, {origin.get(k), direction.get(k)});
+      }
+    }
     ++i;
   });
 }
