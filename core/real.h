@@ -79,6 +79,7 @@ T select(const MaskOf<T>& mask, const T& yes, T no) {
     return T(_mm512_mask_blend_pd(__mmask8(lane_bits(mask)), static_cast<__m512d>(no), static_cast<__m512d>(yes)));
   if constexpr (sizeof(T) == sizeof(__m512) && std::is_same_v<ScalarOf<T>, float>)
     return T(_mm512_mask_blend_ps(__mmask16(lane_bits(mask)), static_cast<__m512>(no), static_cast<__m512>(yes)));
+  if constexpr (sizeof(T) >= sizeof(__m512)) return T([&](auto k) { return mask[k] ? yes[k] : no[k]; });
 #endif
   where(mask, no) = yes;
   return no;
