@@ -31,7 +31,7 @@ constexpr Command (*kCommands[])(CLI::App& program) = {
 
 std::string version() {
   return "Alhazen " ALHAZEN_VERSION "\n" + traversal_version() + "\noneTBB " + TBB_runtime_version() + "\n" +
-         image_library_version();
+         image_library_versions();
 }
 
 int run(int argc, char** argv) {

@@ -11,6 +11,7 @@
 #include "core/fork_join.h"
 #include "loaders/environment_file.h"
 #include "loaders/image_decode.h"
+#include "loaders/image_library.h"
 #include "loaders/record_motion.h"
 
 namespace alhazen {
@@ -26,9 +27,8 @@ Environment environment(const RenderArguments& arguments) {
   return environment;
 }
 
-LoadedScene load(GltfFile& file, const RenderArguments& arguments) {
-  LoadedScene loaded = file.load(arguments.time.time.value_or(0));
-  replace_environment(loaded.scene, arguments);
+LoadedScene load_still(GltfFile& file, const RenderArguments& arguments) {
+  LoadedScene loaded = load_scene(file, arguments);
   bake_single_instances(loaded.scene.geometry, file.moving_meshes());
   open_shutter(file, loaded.scene, arguments);
   return loaded;
@@ -38,8 +38,11 @@ LoadedScene load(GltfFile& file, const RenderArguments& arguments) {
 
 void print_warning(const std::string& text) { std::fprintf(stderr, "warning: %s\n", text.c_str()); }
 
-void replace_environment(Scene& scene, const RenderArguments& arguments) {
-  if (!arguments.environment.empty()) scene.environment = environment(arguments);
+LoadedScene load_scene(GltfFile& file, const RenderArguments& arguments) {
+  if (file.has_images() || !arguments.environment.empty()) preload_image_library();
+  LoadedScene loaded = file.load(arguments.time.time.value_or(0));
+  if (!arguments.environment.empty()) loaded.scene.environment = environment(arguments);
+  return loaded;
 }
 
 void set_up_lights(Scene& scene, const Camera& camera, const RenderArguments& arguments) {
@@ -51,7 +54,9 @@ void set_up_lights(Scene& scene, const Camera& camera, const RenderArguments& ar
     scene.lights.clear();
     if (arguments.environment.empty()) scene.environment.reset();
   }
-  if (arguments.lights == LightChoice::studio || (arguments.lights == LightChoice::automatic && unlit))
+  const bool studio = arguments.lights == LightChoice::studio || (arguments.lights == LightChoice::automatic && unlit);
+  const bool empty = scene.geometry.mesh_instances.empty() && scene.geometry.shape_instances.empty();
+  if (studio && !empty)  // preparing an environment takes longer than all else that an empty scene does
     add_studio_lights(scene, camera);
 }
 
@@ -84,7 +89,7 @@ std::unique_ptr<AcceleratedScene> build_scene(LoadedScene& loaded, const Surface
 PreparedScene::PreparedScene(const RenderArguments& arguments)
     : file(arguments.scene, print_warning, arguments.choice, arguments.time,
            std::make_shared<LoadBudget>(arguments.limits)),
-      loaded(load(file, arguments)) {
+      loaded(load_still(file, arguments)) {
   const RenderOptions& options = arguments.options;
   camera = pick_camera(loaded.scene, arguments.camera, double(options.width) / options.height);
   set_up_lights(loaded.scene, camera, arguments);

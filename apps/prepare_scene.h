@@ -14,8 +14,9 @@ namespace alhazen {
 /// On standard error.
 void print_warning(const std::string& text);
 
-/// Puts the arguments' environment in the place of the scene's own.
-void replace_environment(Scene& scene, const RenderArguments& arguments);
+/// The scene at the arguments' time, in their environment. What decodes images is loaded meanwhile, where there are
+/// any.
+[[nodiscard]] LoadedScene load_scene(GltfFile& file, const RenderArguments& arguments);
 
 /// The lights and background that the arguments ask for; studio lights where there would be none.
 void set_up_lights(Scene& scene, const Camera& camera, const RenderArguments& arguments);

@@ -183,8 +183,7 @@ struct Stage {
       : budget(std::make_shared<LoadBudget>(arguments.limits)),
         loading(std::make_unique<ProgressReporter>(style_of(arguments), title_of(arguments.scene), budget->progress)),
         file(arguments.scene, print_warning, arguments.choice, arguments.time, budget),
-        loaded(file.load(arguments.time.time.value_or(0))) {
-    replace_environment(loaded.scene, arguments);
+        loaded(load_scene(file, arguments)) {
     if (arguments.shutter > 0 && !file.is_animated() && !arguments.quiet)
       std::fprintf(stderr, "note: --shutter: no animation is played, so nothing moves\n");
     bake_single_instances(loaded.scene.geometry, file.moving_meshes());

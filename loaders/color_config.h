@@ -8,6 +8,8 @@
 
 namespace alhazen {
 
+class DisplayProcessor;
+
 struct DisplayView {
   std::string config;         // file; empty: none is wanted
   std::string display, view;  // empty: the configuration's default
@@ -27,8 +29,7 @@ class DisplayTransform {
   void apply(ColorImage& image) const;
 
  private:
-  struct Impl;
-  std::unique_ptr<const Impl> impl_;
+  std::unique_ptr<const DisplayProcessor> processor_;
 };
 
 /// Throws what DisplayTransform would.

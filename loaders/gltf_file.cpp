@@ -171,6 +171,8 @@ std::span<const char> GltfFile::moving_nodes() const { return impl_->moves.nodes
 
 bool GltfFile::is_animated() const { return !impl_->channels.empty(); }
 
+bool GltfFile::has_images() const { return !impl_->source.root().elements("images").empty(); }
+
 std::pair<double, double> GltfFile::time_span() const {
   const TimeSpan span = alhazen::time_span(impl_->channels);
   return {span.first, span.last};

@@ -55,6 +55,9 @@ class GltfFile {
   /// Whether an animation is played that sets anything.
   [[nodiscard]] bool is_animated() const;
 
+  /// Whether there are images to decode.
+  [[nodiscard]] bool has_images() const;
+
   /// Seconds from the first key of what is animated to the last; 0 and 0 where nothing is.
   [[nodiscard]] std::pair<double, double> time_span() const;
 

@@ -1,8 +1,5 @@
 #include "loaders/image_decode.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,6 +13,7 @@
 #include "core/error.h"
 #include "loaders/image_header.h"
 #include "loaders/image_ktx.h"
+#include "loaders/image_library.h"
 #include "loaders/in_parallel.h"
 #include "materials/mipmap.h"
 
@@ -23,9 +21,9 @@ namespace alhazen {
 namespace {
 
 template <class T>
-void read_samples(OIIO::ImageInput& in, OIIO::TypeDesc type, TextureImage& image) {
+void read_samples(ImageReader& in, SampleType type, TextureImage& image) {
   std::vector<T> samples(size_t(image.width) * size_t(image.height) * size_t(image.channels));
-  if (!in.read_image(0, 0, 0, image.channels, type, samples.data())) throw std::runtime_error(in.geterror());
+  in.read(image.channels, type, samples.data(), ptrdiff_t(size_t(image.channels) * sizeof(T)));
   image.samples = std::move(samples);
 }
 
@@ -42,28 +40,20 @@ void check_size(const EncodedImage& image, const ImageHeader& header, LoadBudget
 
 TextureImage decode(ImageKind kind, const std::vector<uint8_t>& bytes, const ImageHeader& header) {
   if (kind == ImageKind::ktx2) return decode_ktx(bytes);
-  const std::string format(name_of(kind));
-  OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
-  const auto in = OIIO::ImageInput::create(format);
-  if (!in) throw std::runtime_error(OIIO::geterror());
-  if (!in->supports("ioproxy") || !in->set_ioproxy(&reader))
-    throw std::runtime_error(format + " images cannot be read from memory");
-  OIIO::ImageSpec config, spec;
-  config["oiio:UnassociatedAlpha"] = 1;
-  if (!in->open("image." + format, spec, config)) throw std::runtime_error(in->geterror());
-  if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0) throw std::runtime_error("no pixels");
-  if (uint64_t(spec.width) * uint64_t(spec.height) > header.pixels() || spec.depth > 1)
+  const auto in = image_library().open_memory(std::string(name_of(kind)), bytes);
+  const ImageLayout& layout = in->layout();
+  if (layout.width <= 0 || layout.height <= 0 || layout.channels.empty()) throw std::runtime_error("no pixels");
+  if (uint64_t(layout.width) * uint64_t(layout.height) > header.pixels() || layout.depth > 1)
     throw std::runtime_error("cubes and volumes are not read");
 
   TextureImage image;
-  image.width = spec.width, image.height = spec.height, image.channels = std::min(spec.nchannels, 4);
-  if (spec.format == OIIO::TypeDesc::UINT8)
-    read_samples<uint8_t>(*in, OIIO::TypeDesc::UINT8, image);
-  else if (spec.format == OIIO::TypeDesc::UINT16)
-    read_samples<uint16_t>(*in, OIIO::TypeDesc::UINT16, image);
+  image.width = layout.width, image.height = layout.height, image.channels = std::min(int(layout.channels.size()), 4);
+  if (layout.type == SampleType::uint8)
+    read_samples<uint8_t>(*in, SampleType::uint8, image);
+  else if (layout.type == SampleType::uint16)
+    read_samples<uint16_t>(*in, SampleType::uint16, image);
   else
-    read_samples<float>(*in, OIIO::TypeDesc::FLOAT, image);
-  in->close();
+    read_samples<float>(*in, SampleType::float32, image);
   return image;
 }
 
@@ -110,7 +100,7 @@ std::vector<TextureImage> decode_images(std::vector<EncodedImage> encoded, const
       images[i] = decode(*kind, encoded[i].bytes, *header);
       encoded[i].bytes = {};
       if (encoded[i].mipmaps) add_smaller_levels(images[i], encoded[i].space);
-    } catch (const LoadError&) {
+    } catch (const Error&) {
       throw;
     } catch (const std::bad_alloc&) {
       failed("out of memory");

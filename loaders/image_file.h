@@ -38,7 +38,8 @@ struct ImageEncoding {
 void check_encoding(const std::filesystem::path& file, const ImageEncoding& encoding);
 
 /// Finds out before the work is done whether a picture of this size can be written: throws WriteError for an unknown
-/// format, one that has no pictures so large, a missing folder, no permission. Leaves nothing behind.
+/// format, one that has no pictures so large, a missing folder, no permission. Leaves nothing behind; what writes the
+/// format is being loaded from now on.
 void check_writable(const std::filesystem::path& file, int width, int height);
 
 /// Names and values; each format keeps those that it has a place for.
@@ -58,7 +59,7 @@ void write_image(const std::filesystem::path& file, const IdImage& image, const 
 /// The bytes of a PNG file: R, G, B, A, sRGB. Throws WriteError.
 [[nodiscard]] std::vector<uint8_t> encoded_png(const ColorImage& image);
 
-/// "OpenImageIO 2.4.7": what reads and writes images.
-[[nodiscard]] std::string image_library_version();
+/// "OpenImageIO 2.4.7.1, OpenEXR 3.1.5, libpng 1.6.39": what reads and writes images.
+[[nodiscard]] std::string image_library_versions();
 
 }  // namespace alhazen

@@ -3,10 +3,14 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <cerrno>
 #include <climits>
 #include <cstring>
+#include <exception>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -43,6 +47,13 @@ void check_target(const fs::path& named, const fs::path& target) {
 fs::path part_path(const fs::path& target, int attempt) {
   return target.parent_path() / (".alhazen-" + std::to_string(::getpid()) + "-" + std::to_string(attempt) + ".part" +
                                  target.extension().string());
+}
+
+/// A library's reason, without line breaks.
+std::string one_line(std::string text) {
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text.empty() ? "cannot be written" : text;
 }
 
 /// So that the renaming itself survives a power cut; what cannot be synchronised is no reason to fail.
@@ -92,6 +103,20 @@ void PartFile::commit() {
   check(::rename(part_.c_str(), target_.c_str()));
   g_exists = false;
   sync_folder(target_);
+}
+
+void write_whole(const fs::path& file, const std::function<void(PartFile& part)>& write) {
+  PartFile part(file);
+  try {
+    write(part);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw WriteError(file.string(), one_line(error.what()));
+  }
+  part.commit();
 }
 
 void remove_part_file() noexcept {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 
 namespace alhazen {
@@ -31,6 +32,10 @@ class PartFile {
   std::filesystem::path named_, target_, part_;
   int fd_ = -1;
 };
+
+/// Calls `write` with a part that is committed when it returns. What it throws becomes a WriteError, unless it is an
+/// Error or std::bad_alloc.
+void write_whole(const std::filesystem::path& file, const std::function<void(PartFile& part)>& write);
 
 /// Removes the PartFile that there is. Async-signal-safe: for a handler about to end the process.
 void remove_part_file() noexcept;

@@ -408,7 +408,7 @@ class CommandLine(unittest.TestCase):
         for delay in (0, 0.01, 0.1, 0.25):
             process = subprocess.Popen([PROGRAM, "render", SCENE, "-o", self.file("a.exr"), "--size", "2048x2048",
                                         "--progress", "json"], stdout=subprocess.PIPE, text=True)
-            while json.loads(process.stdout.readline())["fraction"] == 0:
+            while json.loads(process.stdout.readline()).get("fraction", 0) == 0:  # loading has none
                 pass
             process.send_signal(signal.SIGINT)
             time.sleep(delay)

@@ -10,6 +10,13 @@ cmake --build "$work/build" >/dev/null
 status=0
 "$work/prefix/bin/alhazen" crosscheck --rays 2048 --intersector "$(find "$work/build" -name 'libnaive_sphere.so')" || status=$?
 [ "$status" = 5 ] || { echo "expected status 5, got $status"; exit 1; }
+printf '{"asset": {"version": "2.0"}}' >"$work/empty.gltf"
+"$work/prefix/bin/alhazen" render "$work/empty.gltf" -o "$work/empty.jpg" --size 8x8 --quiet
+rm "$(find "$work/prefix" -name alhazen_images.so)"
+status=0
+"$work/prefix/bin/alhazen" render "$work/empty.gltf" -o "$work/empty.jpg" --size 8x8 --quiet 2>"$work/said" || status=$?
+[ "$status" = 1 ] && grep -q 'cannot load what reads and writes images' "$work/said" ||
+  { echo "status $status, without its library it said:"; cat "$work/said"; exit 1; }
 status=0
 "$work/build/check_naive_sphere" || status=$?
 [ "$status" = 5 ] || { echo "expected status 5, got $status"; exit 1; }

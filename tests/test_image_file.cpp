@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "loaders/image_file.h"
+#include "loaders/image_library.h"
 #include "loaders/part_file.h"
 
 namespace alhazen {
@@ -184,6 +185,23 @@ TEST_F(ImageFile, AnUnwritableDestinationIsFoundBeforehand) {
   EXPECT_THROW(check_writable(file("a.ico"), 300, 1), WriteError);
   EXPECT_NO_THROW(check_writable(file("a.png"), 65536, 65536));
   EXPECT_EQ(files(), 1u);  // the folder
+}
+
+TEST_F(ImageFile, WhatIsKnownOfFormatsIsWhatTheLibrarySays) {
+  for (const char* extension :
+       {".exr", ".png", ".hdr", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".tga", ".bmp", ".ppm"}) {
+    const auto said = image_library().writer_format(extension);
+    ASSERT_TRUE(said) << extension;
+    const ImageFormat known = image_format(std::string("a") + extension);
+    EXPECT_EQ(known.name, said->name) << extension;
+    EXPECT_EQ(known.alpha, said->alpha) << extension;
+  }
+}
+
+TEST_F(ImageFile, ALibraryThatIsBeingLoadedMayBeAskedAnywhere) {
+  preload_image_library();
+  preload_image_library();
+  EXPECT_EQ(&image_library(), &image_library());
 }
 
 TEST_F(ImageFile, AFormatRefusesChoicesThatItLacks) {
