@@ -145,6 +145,8 @@ class Whitted {
     // A slanted surface shows more of itself along one axis: the mean of both, for mip levels have no direction.
     surface.footprint = cone.width / std::sqrt(std::max(1e-3f, std::abs(dot(surface.ng_world, ray.direction))));
     const Material& material = scene_.materials[surface.material];
+    if (!scene_.images.empty() && material.model != ShadingModel::phong)  // which knows no mipmaps
+      measure_shape_uvs(scene_, ids, surface.footprint, time_of(path.pixel), surface);
     const SurfaceInputs inputs = surface.inputs();
     const float alpha = material.alpha_mode == AlphaMode::blend ? coverage(material, table_, inputs) : 1.0f;
     const Rgb arriving =
