@@ -36,8 +36,9 @@ ShadingGroups::ShadingGroups(const Scene& scene) {
   std::map<ShadingGroup, uint32_t> known;
   const auto group_of = [&](uint32_t material, Attributes has, bool on_shapes) {
     const Material& m = scene.materials[material];
-    if (!allows_lanes(m)) return uint32_t{0};
     const bool textures = has_textures(m);
+    // Where Phong's, which know no mipmaps, are not meant, shapes are measured one by one for their textures.
+    if (!allows_lanes(m) || (on_shapes && textures && m.model != ShadingModel::phong)) return uint32_t{0};
     if (!textures) has.uv_sets = 0;
     if (!m.normal_texture) has.tangents = false;
     const ShadingGroup group{material, true, textures, on_shapes, has};

@@ -204,24 +204,65 @@ double mesh_curvature(const Scene& scene, const HitIds& ids, float time) {
   return divergence / (2 * dot(across, across));
 }
 
-/// From the normals at steps to two sides, put back on the surface.
-double shape_curvature(const Scene& scene, const HitIds& ids, const SurfacePoint& point, double width, float time) {
-  const Affine3d m = world_from_object(scene.geometry, ids.object, time), object_from_world = inverse(m);
-  const Shape& shape = scene.geometry.shapes[shape_instance(scene.geometry, ids.object).shape];
-  const int face = int(ids.part);
-  const double step = std::max(width, 1e-6 * max_component(abs(point.p_world)));  // well above the rounding of double
-  const ShadingFrame frame = frame_about(point.ng_world);
-  const auto normal_near = [&](const Vec3d& p_world) {
-    const Vec3d near_object = transform_point(object_from_world, p_world);
+/// A shape's surface about a point of it.
+class ShapeSurroundings {
+ public:
+  /// Steps of about `width` metres to two sides.
+  ShapeSurroundings(const Scene& scene, const HitIds& ids, const SurfacePoint& point, double width, float time)
+      : world_from_object_(world_from_object(scene.geometry, ids.object, time)),
+        object_from_world_(inverse(world_from_object_)),
+        shape_(scene.geometry.shapes[shape_instance(scene.geometry, ids.object).shape]),
+        face_(int(ids.part)),
+        p_world_(point.p_world),
+        step_(std::max(width, 1e-6 * max_component(abs(point.p_world)))) {  // well above the rounding of double
+    const ShadingFrame frame = frame_about(point.ng_world);
+    sides_ = {Vec3d(frame.t), Vec3d(frame.b)};
+  }
+
+  /// From how far the normal leans outward at the steps, put back on the surface.
+  [[nodiscard]] double mean_curvature() const {
+    const Vec3d n = normal_near(p_world_);
+    double turns = 0;
+    for (const Vec3d& side : sides_) turns += dot(normal_near(p_world_ + side * step_) - n, side) / step_;
+    return turns / 2;
+  }
+
+  /// The root of the ratio of the areas that the steps span.
+  [[nodiscard]] float uv_per_metre() const {
+    const Vec2f uv = uv_near(p_world_);
+    std::array<Vec2d, 2> d;
+    for (size_t k = 0; k < 2; ++k) {
+      const Vec2f moved = uv_near(p_world_ + sides_[k] * step_);
+      d[k] = {double(moved.x) - double(uv.x), double(moved.y) - double(uv.y)};
+      d[k].x -= std::round(d[k].x);  // u starts anew at a seam
+    }
+    return float(std::sqrt(std::abs(d[0].x * d[1].y - d[0].y * d[1].x)) / step_);
+  }
+
+ private:
+  /// f(shape, point of its surface near p_world, face).
+  template <class F>
+  [[nodiscard]] auto near(const Vec3d& p_world, const F& f) const {
+    const Vec3d p_object = transform_point(object_from_world_, p_world);
+    return std::visit([&](const auto& shape) { return f(shape, project(shape, p_object, face_), face_); }, shape_);
+  }
+  [[nodiscard]] Vec3d normal_near(const Vec3d& p_world) const {
     return normalize(transform_normal(
-        m, std::visit([&](const auto& s) { return normal(s, project(s, near_object, face), face); }, shape)));
-  };
-  const Vec3d n = normal_near(point.p_world);
-  const auto turn = [&](const Vec3d& along) {
-    return dot(normal_near(point.p_world + along * step) - n, along) / step;
-  };
-  return (turn(Vec3d(frame.t)) + turn(Vec3d(frame.b))) / 2;
-}
+        world_from_object_,
+        near(p_world, [](const auto& shape, const Vec3d& p, int face) { return normal(shape, p, face); })));
+  }
+  [[nodiscard]] Vec2f uv_near(const Vec3d& p_world) const {
+    return near(p_world,
+                [](const auto& shape, const Vec3d& p, int face) { return texture_coordinates(shape, p, face); });
+  }
+
+  Affine3d world_from_object_, object_from_world_;
+  const Shape& shape_;
+  int face_;
+  Vec3d p_world_;
+  double step_;
+  std::array<Vec3d, 2> sides_;
+};
 
 }  // namespace
 
@@ -370,9 +411,15 @@ BasicSurfacePoint<F> surface_points(const Scene& scene, const LaneHits& hits, co
 float mean_curvature(const Scene& scene, const HitIds& ids, const SurfacePoint& point, float width,
                      float time) noexcept {
   const double curvature = is_shape(scene.geometry, ids.object)
-                               ? shape_curvature(scene, ids, point, double(width), time)
+                               ? ShapeSurroundings(scene, ids, point, double(width), time).mean_curvature()
                                : mesh_curvature(scene, ids, time);
   return std::isfinite(curvature) ? float(curvature) : 0;
+}
+
+void measure_shape_uvs(const Scene& scene, const HitIds& ids, float width, float time, SurfacePoint& point) noexcept {
+  if (!is_shape(scene.geometry, ids.object)) return;
+  const float density = ShapeSurroundings(scene, ids, point, double(width), time).uv_per_metre();
+  point.uv_per_metre[0] = std::isfinite(density) ? density : 0;
 }
 
 SurfacePoint surface_point(const Scene& scene, const Crossing& crossing) noexcept {

@@ -22,7 +22,7 @@ struct BasicSurfacePoint {
   int uv_count = 0;
   BasicRgba<F> color;
   uint32_t material = 0;
-  std::array<F, kMaxUvSets> uv_per_metre{};  // on triangles: the root of the ratio of areas; else 0
+  std::array<F, kMaxUvSets> uv_per_metre{};  // the root of the ratio of areas; of shapes by measure_shape_uvs, else 0
   F footprint = 0;                           // metres across, of what the hit stands for; 0: a point
 
   [[nodiscard]] BasicSurfaceInputs<F> inputs() const {
@@ -76,6 +76,10 @@ struct LaneHits {
 /// vertices' normals, shapes that over `width` metres. 0 where there is none to be had.
 [[nodiscard]] float mean_curvature(const Scene& scene, const HitIds& ids, const SurfacePoint& point, float width,
                                    float time = 0) noexcept;
+
+/// Sets `uv_per_metre` of a point on a shape, from how far texture coordinates go over `width` metres. Meshes have it
+/// from surface_point.
+void measure_shape_uvs(const Scene& scene, const HitIds& ids, float width, float time, SurfacePoint& point) noexcept;
 
 /// Only what texture look-ups need, for crossings met in traversal.
 [[nodiscard]] SurfacePoint surface_point(const Scene& scene, const Crossing& crossing) noexcept;

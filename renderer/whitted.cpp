@@ -223,6 +223,8 @@ class Whitted {
     const Cone cone = path.cone.at(hits.t[i]);
     surface.footprint = footprint(cone.width, surface.ng_world, ray.direction);
     const Material& material = scene_.materials[surface.material];
+    if (!scene_.images.empty() && material.model != ShadingModel::phong)  // which knows no mipmaps
+      measure_shape_uvs(scene_, ids, surface.footprint, time_of(path.pixel), surface);
     const SurfaceInputs inputs = surface.inputs();
     const float alpha = material.alpha_mode == AlphaMode::blend ? coverage(material, table_, inputs) : 1.0f;
     const Rgb arriving = arriving_weight(path, hits.t[i]);

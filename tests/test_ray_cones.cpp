@@ -23,22 +23,37 @@ Affine3d somewhere() {
   return m;
 }
 
-/// Of a shape three times as large, where p_object is the point nearest to on that face.
-float curvature_of(const Shape& shape, const Vec3d& p_object, int face = kWallFace, float width = 1e-4f) {
+/// A shape three times as large, and the point that p_object is nearest to on that face.
+struct OneShape {
   Scene scene;
-  scene.materials.emplace_back();
-  scene.geometry.shapes.push_back(shape);
-  const Affine3d m = somewhere();
-  scene.geometry.shape_instances.push_back({0, 0, 0, m});
+  HitIds ids;
   SurfacePoint point;
-  std::visit(
-      [&](const auto& s) {
-        const Vec3d p = project(s, p_object, face);
-        point.p_world = transform_point(m, p);
-        point.ng_world = point.ns_world = Vec3f(normalize(transform_normal(m, normal(s, p, face))));
-      },
-      shape);
-  return mean_curvature(scene, {0, uint32_t(face), 0}, point, width);
+
+  OneShape(const Shape& shape, const Vec3d& p_object, int face) : ids{0, uint32_t(face), 0} {
+    scene.materials.emplace_back();
+    scene.geometry.shapes.push_back(shape);
+    const Affine3d m = somewhere();
+    scene.geometry.shape_instances.push_back({0, 0, 0, m});
+    std::visit(
+        [&](const auto& s) {
+          const Vec3d p = project(s, p_object, face);
+          point.p_world = transform_point(m, p);
+          point.ng_world = point.ns_world = Vec3f(normalize(transform_normal(m, normal(s, p, face))));
+        },
+        shape);
+  }
+};
+
+float curvature_of(const Shape& shape, const Vec3d& p_object, int face = kWallFace, float width = 1e-4f) {
+  const OneShape one(shape, p_object, face);
+  return mean_curvature(one.scene, one.ids, one.point, width);
+}
+
+float uv_per_metre_of(const Shape& shape, const Vec3d& p_object, int face = kWallFace) {
+  OneShape one(shape, p_object, face);
+  measure_shape_uvs(one.scene, one.ids, 0.01f, 0, one.point);
+  EXPECT_TRUE(one.point.has_uv_per_metre);
+  return one.point.uv_per_metre[0];
 }
 
 Quadric quadric(const std::array<double, 10>& coefficients) {
@@ -63,6 +78,16 @@ TEST(Curvature, OverMoreThanTheShapeIsBoundedByTheWidth) {
     EXPECT_GT(turn, 0.8f);
     EXPECT_LE(turn, 1.0001f);
   }
+}
+
+TEST(ShapeTextures, GoOverASurfaceAsFastAsTheirCoordinatesSay) {
+  const double pi = std::numbers::pi;
+  const Vec3d p = normalize(Vec3d{0.3, -0.8, 0.5}) * 2.0;
+  const double on_sphere = 1 / std::sqrt(2 * pi * 3 * std::hypot(p.x, p.z) * pi * 6);
+  EXPECT_NEAR(uv_per_metre_of(Sphere{2}, p), on_sphere, 0.01 * on_sphere);
+  EXPECT_NEAR(uv_per_metre_of(Sphere{2}, {1e-9, 0, -2}), 1 / std::sqrt(2 * pi * 6 * pi * 6), 1e-3);  // at the seam
+  EXPECT_NEAR(uv_per_metre_of(Cylinder{4, 2, 2, true}, {0.3, -0.8, 0.5}), 1 / std::sqrt(2 * pi * 6 * 12), 1e-3);
+  EXPECT_NEAR(uv_per_metre_of(Box{{1, 2, 3}}, {0.3, 1, 0.5}, 3), 1 / std::sqrt(3.0 * 9), 1e-3);
 }
 
 /// A ball of radius 1 as rings of triangles with its normals.
@@ -199,6 +224,12 @@ struct BallOverChecker {
     camera.world_from_camera.origin = {0, 1.5, 4};
   }
 
+  /// The ball wears the squares.
+  void paint() {
+    scene.materials[1] = scene.materials[0];
+    scene.materials[1].base_color_texture.xx = scene.materials[1].base_color_texture.yy = 2;
+  }
+
   [[nodiscard]] std::vector<float> picture(int samples) const {
     std::vector<Opacity> opacity;
     const AcceleratedScene accelerated(scene.geometry, surface_filter(scene, opacity));
@@ -209,31 +240,36 @@ struct BallOverChecker {
   }
 };
 
-/// Root mean square of what one sample a pixel is off.
-double error_of_one_sample(const Material& of_ball, bool mesh, Mipmaps mipmaps) {
-  const std::vector<float> one = BallOverChecker(of_ball, mesh, mipmaps).picture(1);
-  const std::vector<float> many = BallOverChecker(of_ball, mesh, Mipmaps::none).picture(256);
+/// Root mean square of what one sample a pixel is off; without a material the ball is painted.
+double error_of_one_sample(const Material* of_ball, bool mesh, Mipmaps mipmaps) {
+  const auto picture = [&](Mipmaps levels, int samples) {
+    BallOverChecker subject(of_ball ? *of_ball : Material{}, mesh, levels);
+    if (!of_ball) subject.paint();
+    return subject.picture(samples);
+  };
+  const std::vector<float> one = picture(mipmaps, 1), many = picture(Mipmaps::none, 256);
   double squared = 0;
   for (size_t i = 0; i < one.size(); i += 4) squared += double(one[i] - many[i]) * double(one[i] - many[i]);
   return std::sqrt(squared / double(one.size() / 4));
 }
 
-TEST(RayCone, KeepsReflectionsInABallAndViewsThroughOneFromAliasing) {
+TEST(RayCone, KeepsABallAndWhatIsSeenInOneAndThroughOneFromAliasing) {
   Material mirror, glass;
   mirror.model = glass.model = ShadingModel::phong;
   mirror.phong.diffuse = glass.phong.diffuse = mirror.phong.ambient = glass.phong.ambient = Rgb(0.0f);
   mirror.phong.reflection = Rgb(1.0f);
   glass.phong.transmission = Rgb(1.0f), glass.phong.ior = 1.5f;
   // Cones that keep their spread at the mirror leave 0.58 of it.
-  const auto expect_filtered = [](const Material& ball, bool mesh) {
+  const auto expect_filtered = [](const Material* ball, bool mesh) {
     const double unfiltered = error_of_one_sample(ball, mesh, Mipmaps::none);
     const double filtered = error_of_one_sample(ball, mesh, Mipmaps::linear);
     EXPECT_GT(unfiltered, 0.25);
     EXPECT_LT(filtered, 0.3 * unfiltered);
   };
-  expect_filtered(mirror, false);
-  expect_filtered(mirror, true);
-  expect_filtered(glass, false);
+  expect_filtered(&mirror, false);
+  expect_filtered(&mirror, true);
+  expect_filtered(&glass, false);
+  expect_filtered(nullptr, false);
 }
 
 }  // namespace
