@@ -26,6 +26,12 @@
 namespace alhazen {
 namespace {
 
+constexpr RTCBuildQuality embree_quality(BuildQuality quality) {
+  return quality == BuildQuality::fast   ? RTC_BUILD_QUALITY_LOW
+         : quality == BuildQuality::best ? RTC_BUILD_QUALITY_HIGH
+                                         : RTC_BUILD_QUALITY_MEDIUM;
+}
+
 /// What a top-level geometry number stands for.
 struct TopEntry {
   enum class Kind : uint8_t { none, baked_part, instance, instances, shapes, moving_shapes } kind = Kind::none;
@@ -238,8 +244,10 @@ struct AcceleratedScene::Traversal {
 
   static RTCScene new_scene(const Impl& impl, const BuildOptions& options) {
     RTCScene scene = rtcNewScene(impl.device);
-    rtcSetSceneFlags(scene, options.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);  // the high quality is not deterministic over threads
+    const unsigned robust = options.robust ? RTC_SCENE_FLAG_ROBUST : 0,
+                   compact = options.compact ? RTC_SCENE_FLAG_COMPACT : 0;
+    rtcSetSceneFlags(scene, RTCSceneFlags(robust | compact));
+    rtcSetSceneBuildQuality(scene, embree_quality(options.quality));
     return scene;
   }
 
@@ -273,6 +281,13 @@ struct AcceleratedScene::Traversal {
     return g;
   }
 
+  /// A fast build orders each geometry on its own, by the geometry's quality.
+  static void set_quality(const Impl& impl, RTCGeometry g) {
+    if (impl.options.quality != BuildQuality::fast) return;
+    rtcSetGeometryBuildQuality(g, embree_quality(BuildQuality::fast));
+    rtcCommitGeometry(g);
+  }
+
   /// Part `part_index` of the mesh as geometry `id` of the scene; `object`: where the part is not instanced.
   static void attach_part(Impl& impl, RTCScene scene, uint32_t id, const Mesh& mesh, const Track<MeshPose>* track,
                           uint32_t part_index, uint32_t object, bool watertight) {
@@ -286,6 +301,7 @@ struct AcceleratedScene::Traversal {
     } else {
       g = new_embree_triangles(impl, part, part_index, track, opacity);
     }
+    set_quality(impl, g);
     rtcAttachGeometryByID(scene, g, id);
     rtcReleaseGeometry(g);
   }
@@ -310,6 +326,7 @@ struct AcceleratedScene::Traversal {
 
   /// As the next of the top level's geometries.
   static void attach(Impl& impl, RTCScene scene, RTCGeometry g, const TopEntry& entry) {
+    set_quality(impl, g);
     rtcAttachGeometryByID(scene, g, unsigned(impl.top.size()));
     rtcReleaseGeometry(g);
     impl.top.push_back(entry);

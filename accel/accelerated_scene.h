@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "accel/build_quality.h"
 #include "accel/geometry.h"
 #include "accel/surface_filter.h"
 #include "accel/wave.h"
@@ -20,8 +21,10 @@ struct MovingParts {
 };
 
 struct BuildOptions {
-  bool robust = true;  // watertight triangle tests: 13 to 27 % of traversal, and no ray slips between two triangles
-  int threads = 0;     // for the build; 0: all
+  BuildQuality quality = BuildQuality::balanced;
+  bool robust = true;    // watertight triangle tests: 13 to 27 % of traversal, and no ray slips between two triangles
+  bool compact = false;  // less memory for hierarchies, slower traversal
+  int threads = 0;       // for the build; 0: all
   // Triangles of our own in place of Embree's: closed meshes have no leaks, t is rounded once. Several times slower.
   bool watertight = false;
   MovingParts moving{};

@@ -30,7 +30,8 @@ struct BenchArguments {
   std::string ladder, json, plot, before;
   std::vector<int> threads;
   RenderOptions options{.width = 1024, .height = 1024}, ladder_options{.width = 160, .height = 120};
-  bool has_size = false;
+  BuildOptions build;
+  bool has_size = false, plain_triangles = false, breakdown = false;
   int repeats = 9;
 };
 
@@ -79,8 +80,12 @@ int run_bench(const BenchArguments& arguments) {
     if (!file.empty()) (void)PartFile(file);  // before the work is done
   std::vector<FrameBench> all;
   for (const std::string& scene : scenes) {
-    const std::vector<FrameBench> benches = bench_frames(scene, arguments.options, threads, arguments.repeats);
-    for (const FrameBench& bench : benches) std::printf("%s\n", bench_text(bench).c_str());
+    const std::vector<FrameBench> benches =
+        bench_frames(scene, arguments.options, arguments.build, threads, arguments.repeats);
+    for (const FrameBench& bench : benches) {
+      std::printf("%s\n", bench_text(bench).c_str());
+      if (arguments.breakdown) std::printf("%s\n", breakdown_text(bench).c_str());
+    }
     print_scaling(benches);
     std::fflush(stdout);
     all.insert(all.end(), benches.begin(), benches.end());
@@ -127,6 +132,10 @@ Command add_bench_command(CLI::App& program) {
       ->type_name("N")
       ->check(CLI::Range(1, 10000).description(""))
       ->capture_default_str();
+  add_build_options(*command, arguments->build.quality, arguments->build.compact);
+  command->add_flag("--no-robust", arguments->plain_triangles,
+                    "Embree's default triangle test: faster, and a ray may slip between two triangles");
+  command->add_flag("--breakdown", arguments->breakdown, "A table of where the frame's time goes, for each ray too");
   command->add_option("--json", arguments->json, "All samples and what they were taken on")->type_name("FILE");
   command->add_option("--plot", arguments->plot, "The same as a drawing (.svg): rays a second by kind, and scaling")
       ->type_name("FILE");
@@ -145,8 +154,10 @@ Command add_bench_command(CLI::App& program) {
       "Examples:\n"
       "  alhazen bench scene.glb --threads 1,2,4 --json now.json\n"
       "  alhazen bench scene.glb --compare before.json --plot now.svg\n"
+      "  alhazen bench scene.glb --build fast --breakdown\n"
       "  alhazen bench --ladder scene.gltf --size 320x240");
   return {command, [arguments, command] {
+            arguments->build.robust = !arguments->plain_triangles;
             arguments->has_size = command->count("--size") > 0;
             return run(*arguments);
           }};

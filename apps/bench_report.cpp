@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "accel/accelerated_scene.h"
+#include "apps/render_arguments.h"
 #include "apps/sample_statistics.h"
 #include "core/error.h"
 #include "loaders/image_file.h"
@@ -22,6 +23,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::array kKindNames{"camera", "camera_shadow", "bounced", "bounced_shadow"};
 constexpr std::array kKindTitles{"camera", "their shadow", "bounced", "their shadow"};
 constexpr std::array kPhaseNames{"generation", "traversal", "shading", "film"};
+static_assert(kPhaseNames.size() == kPhases && kKindNames.size() == kWaveKinds && kKindTitles.size() == kWaveKinds);
 constexpr double kSignificance = 0.01, kLeastChange = 0.01;
 
 template <class... Arguments>
@@ -38,6 +40,12 @@ const char* integrator_name(Integrator integrator) {
 std::string call_text(const BareCall& call) {
   if (call.width == 1) return "one by one";
   return std::to_string(call.width) + (call.coherence == Coherence::coherent ? " coherent" : " incoherent");
+}
+
+/// "balanced, robust, compact"
+std::string build_text(const BuildOptions& build) {
+  return std::string(build_quality_name(build.quality)) + (build.robust ? ", robust" : ", not robust") +
+         (build.compact ? ", compact" : "");
 }
 
 double idle_share(const FrameBench& bench) {
@@ -98,7 +106,11 @@ Json result_json(const FrameBench& bench) {
           {"samples", bench.options.samples},
           {"integrator", integrator_name(bench.options.integrator)},
           {"threads", bench.threads},
-          {"robust", BuildOptions{}.robust},
+          {"max_depth", bench.options.max_depth},
+          {"min_weight", bench.options.min_weight},
+          {"build", build_quality_name(bench.build.quality)},
+          {"robust", bench.build.robust},
+          {"compact", bench.build.compact},
           {"load_s", bench.load_s},
           {"build_s", bench.build_s},
           {"first_tile_s", bench.first_tile_s},
@@ -123,6 +135,8 @@ Json key_of(const Json& result) {
   Json key;
   for (const char* name : {"scene", "width", "height", "samples", "integrator", "threads"})
     key.push_back(result.at(name));
+  key.push_back(result.value("build", "balanced")), key.push_back(result.value("robust", true));
+  key.push_back(result.value("compact", false));
   return key;
 }
 
@@ -145,9 +159,9 @@ std::string compared(const Json& now, const Json& before, bool& regressed) {
 std::string bench_text(const FrameBench& bench) {
   const double frame = median(bench.frame_s), traversal = median(bench.traversal_s), single = median(bench.single_s);
   const auto [least, most] = std::ranges::minmax(bench.frame_s);
-  return format("%s  %dx%d, %s, %d spp, %d thread%s, robust\n", bench.scene.c_str(), bench.options.width,
+  return format("%s  %dx%d, %s, %d spp, %d thread%s, %s\n", bench.scene.c_str(), bench.options.width,
                 bench.options.height, integrator_name(bench.options.integrator), bench.options.samples, bench.threads,
-                bench.threads == 1 ? "" : "s") +
+                bench.threads == 1 ? "" : "s", build_text(bench.build).c_str()) +
          format("  load %.3f s; build %.3f s, %.1f Mprim/s, %.0f bytes each; first tile after %.3f s; peak %.0f MB\n",
                 bench.load_s, bench.build_s, 1e-6 * double(bench.primitives) / bench.build_s,
                 double(bench.hierarchy_bytes) / double(std::max<uint64_t>(1, bench.primitives)), bench.first_tile_s,
@@ -164,12 +178,30 @@ std::string bench_text(const FrameBench& bench) {
          "    " + calls_text(bench) + "\n  time: " + phases_text(bench);
 }
 
+std::string breakdown_text(const FrameBench& bench) {
+  const double frames = double(bench.frame_s.size()), rays = double(std::max<uint64_t>(1, bench.rays.all()));
+  const double frame = std::accumulate(bench.frame_s.begin(), bench.frame_s.end(), 0.0) / frames;
+  const auto row = [&](const std::string& name, double seconds) {
+    return format("    %-24s %5.1f %% %9.3f ms %8.1f ns a ray\n", name.c_str(), 100 * seconds / frame, 1e3 * seconds,
+                  1e9 * seconds * bench.threads / rays);
+  };
+  std::string text;
+  for (size_t k = 0; k < kPhases; ++k) {
+    text += row(kPhaseNames[k], bench.phase_s[k]);
+    if (Phase(k) == Phase::traversal) text += row("  Embree alone", median(bench.traversal_s));
+  }
+  text += row("idle", idle_share(bench) * frame) + row("frame", frame);
+  text.pop_back();
+  return text;
+}
+
 Json bench_json(const std::vector<FrameBench>& benches) {
   Json results = Json::array();
   for (const FrameBench& bench : benches) results.push_back(result_json(bench));
   return {{"machine",
            {{"processor", processor()},
             {"processors", std::thread::hardware_concurrency()},
+            {"build", ALHAZEN_BUILD},
             {"traversal", traversal_version()},
             {"tasks", std::string("oneTBB ") + TBB_runtime_version()},
             {"program", "Alhazen " ALHAZEN_VERSION}}},

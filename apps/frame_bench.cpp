@@ -97,7 +97,7 @@ struct Subject {
   FrameBench costs;
 };
 
-std::unique_ptr<Subject> prepare(const std::string& file, const RenderOptions& options) {
+std::unique_ptr<Subject> prepare(const std::string& file, const RenderOptions& options, const BuildOptions& build) {
   auto subject = std::make_unique<Subject>();
   const auto start = Clock::now();
   subject->loaded = load_gltf(file, print_warning);
@@ -111,7 +111,8 @@ std::unique_ptr<Subject> prepare(const std::string& file, const RenderOptions& o
   costs.load_s = seconds_since(start);
   const SurfaceFilter filter = surface_filter(scene, subject->opacity);
   const auto build_start = Clock::now();
-  subject->accelerated = std::make_unique<AcceleratedScene>(scene.geometry, filter);
+  subject->accelerated = std::make_unique<AcceleratedScene>(scene.geometry, filter, build);
+  costs.build = build;
   costs.build_s = seconds_since(build_start);
   costs.primitives = primitives_of(scene.geometry);
   costs.hierarchy_bytes = subject->accelerated->bytes();
@@ -166,9 +167,9 @@ std::vector<double> FrameBench::efficiencies() const {
   return all;
 }
 
-std::vector<FrameBench> bench_frames(const std::string& file, const RenderOptions& options,
+std::vector<FrameBench> bench_frames(const std::string& file, const RenderOptions& options, const BuildOptions& build,
                                      const std::vector<int>& threads, int repeats) {
-  const std::unique_ptr<Subject> subject = prepare(file, options);
+  const std::unique_ptr<Subject> subject = prepare(file, options, build);
   std::vector<FrameBench> results;
   for (const int count : threads) results.push_back(measure(*subject, options, count, repeats));
   return results;

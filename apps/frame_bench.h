@@ -22,6 +22,7 @@ struct FrameBench {
   std::string scene;  // file name
   int threads = 1;
   RenderOptions options;
+  BuildOptions build;
   double load_s = 0, build_s = 0, first_tile_s = 0;  // the last from before loading
   uint64_t primitives = 0, hierarchy_bytes = 0, peak_bytes = 0;
   RayCounts rays;
@@ -38,6 +39,7 @@ struct FrameBench {
 /// Loads a scene and measures `repeats` frames for each number of threads.
 /// @throw LoadError  as `load_gltf`
 [[nodiscard]] std::vector<FrameBench> bench_frames(const std::string& file, const RenderOptions& options,
-                                                   const std::vector<int>& threads, int repeats);
+                                                   const BuildOptions& build, const std::vector<int>& threads,
+                                                   int repeats);
 
 }  // namespace alhazen

@@ -65,7 +65,8 @@ void open_shutter(GltfFile& file, Scene& scene, const RenderArguments& arguments
 }
 
 BuildOptions build_options(const GltfFile& file, const RenderArguments& arguments, int threads) {
-  BuildOptions options{.threads = threads, .watertight = arguments.watertight};
+  BuildOptions options{
+      .quality = arguments.build, .compact = arguments.compact, .threads = threads, .watertight = arguments.watertight};
   if (file.is_animated()) options.moving = {file.moving_meshes(), file.deforming_meshes(), file.moving_nodes()};
   return options;
 }

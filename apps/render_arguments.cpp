@@ -238,6 +238,20 @@ void add_view_options(CLI::App& command, RenderArguments& arguments) {
       ->check(finite());
   command.add_flag("--watertight", arguments.watertight,
                    "Triangles of our own in place of Embree's: no ray slips through a closed mesh; slower");
+  add_build_options(command, arguments.build, arguments.compact);
+}
+
+void add_build_options(CLI::App& command, BuildQuality& quality, bool& compact) {
+  add_choice<BuildQuality>(
+      command, "--build", quality,
+      {{"fast", BuildQuality::fast}, {"balanced", BuildQuality::balanced}, {"best", BuildQuality::best}},
+      "How much care the hierarchies' building takes: fast for previews, best for long renders");
+  command.add_flag("--compact", compact, "Hierarchies that take less memory; slower");
+}
+
+const char* build_quality_name(BuildQuality quality) {
+  constexpr const char* kNames[] = {"fast", "balanced", "best"};
+  return kNames[size_t(quality)];
 }
 
 void add_tracing_options(CLI::App& command, RenderArguments& arguments) {
@@ -361,6 +375,8 @@ std::string picture_options(const RenderArguments& arguments) {
   }
   if (options.transparent) text += " --transparent";
   if (arguments.watertight) text += " --watertight";
+  if (arguments.build != BuildQuality::balanced) text += std::string(" --build ") + build_quality_name(arguments.build);
+  if (arguments.compact) text += " --compact";
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "accel/build_quality.h"
 #include "apps/frame_range.h"
 #include "apps/progress.h"
 #include "apps/view_transform.h"
@@ -29,6 +30,8 @@ struct RenderArguments {
   std::string camera;                // index or name; empty: the scene's first
   RenderOptions options;
   bool watertight = false;
+  BuildQuality build = BuildQuality::balanced;
+  bool compact = false;
   LightChoice lights = LightChoice::automatic;
   std::optional<Rgb> background, ambient;
   std::string environment;         // file; empty: none
@@ -50,6 +53,12 @@ void add_render_options(CLI::App& command, RenderArguments& arguments);
 void add_view_options(CLI::App& command, RenderArguments& arguments);
 void add_tracing_options(CLI::App& command, RenderArguments& arguments);
 void add_light_options(CLI::App& command, RenderArguments& arguments);
+
+/// --build and --compact; what they are given must live as long as `command`.
+void add_build_options(CLI::App& command, BuildQuality& quality, bool& compact);
+
+/// "fast", "balanced", "best"
+[[nodiscard]] const char* build_quality_name(BuildQuality quality);
 
 /// --size, whose default `options` holds; it must live as long as `command`.
 void add_size_option(CLI::App& command, RenderOptions& options);

@@ -153,6 +153,12 @@ void GltfBuffers::check_sparse(const JsonRef& r, const tinygltf::Accessor& a, Ac
 std::vector<float> floats(const AccessorView& a, std::span<const uint32_t> elements) {
   const ElementLayout layout = layout_of(a);
   std::vector<float> out(elements.size() * a.components);
+  const size_t bytes = a.components * sizeof(float);
+  if (a.type == TINYGLTF_COMPONENT_TYPE_FLOAT && a.data && a.replaced.empty() && layout.used() == bytes) {
+    for (size_t i = 0; i < elements.size(); ++i)
+      std::memcpy(&out[i * a.components], a.data + elements[i] * a.stride, bytes);
+    return out;
+  }
   with_component_type(a.type, [&](auto c) {
     for (size_t i = 0; i < elements.size(); ++i) {
       const uint8_t* from = element(a, elements[i]);
@@ -165,11 +171,21 @@ std::vector<float> floats(const AccessorView& a, std::span<const uint32_t> eleme
 
 std::vector<uint32_t> indices(const AccessorView& a) {
   std::vector<uint32_t> out(a.count);
-  with_component_type(a.type, [&](auto c) {
-    for (uint32_t i = 0; i < a.count; ++i)
-      if (const uint8_t* from = element(a, i)) out[i] = uint32_t(load<decltype(c)>(from));
-  });
+  indices(a, 0, out);
   return out;
+}
+
+void indices(const AccessorView& a, uint64_t first, std::span<uint32_t> out) {
+  if (out.empty()) return;
+  const bool packed = a.data && a.replaced.empty() && a.stride == sizeof(uint32_t);
+  if (packed && a.type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
+    return void(std::memcpy(out.data(), a.data + first * sizeof(uint32_t), out.size_bytes()));
+  with_component_type(a.type, [&](auto c) {
+    for (size_t i = 0; i < out.size(); ++i) {
+      const uint8_t* from = element(a, uint32_t(first + i));
+      out[i] = from ? uint32_t(load<decltype(c)>(from)) : 0;
+    }
+  });
 }
 
 }  // namespace alhazen

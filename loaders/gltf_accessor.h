@@ -70,5 +70,7 @@ class GltfBuffers {
 [[nodiscard]] std::vector<float> floats(const AccessorView& accessor, std::span<const uint32_t> elements);
 /// Of a scalar accessor of unsigned integers: all of them, never normalised.
 [[nodiscard]] std::vector<uint32_t> indices(const AccessorView& accessor);
+/// As many of them as `out` takes, from element `first` on.
+void indices(const AccessorView& accessor, uint64_t first, std::span<uint32_t> out);
 
 }  // namespace alhazen

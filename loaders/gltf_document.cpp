@@ -1,12 +1,18 @@
 #include "loaders/gltf_document.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <atomic>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <string_view>
 
 #include "core/error.h"
+#include "loaders/in_parallel.h"
 
 namespace alhazen {
 namespace {
@@ -111,6 +117,46 @@ json parse_json(const std::string& name, std::string_view text, LoadBudget& budg
   }
 }
 
+struct OpenFile {
+  int descriptor;
+  explicit OpenFile(const fs::path& path) : descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  ~OpenFile() {
+    if (descriptor >= 0) ::close(descriptor);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+};
+
+/// False where the file ends before.
+bool read_at(int file, size_t offset, std::span<uint8_t> into) {
+  while (!into.empty()) {
+    const ssize_t read = ::pread(file, into.data(), into.size(), off_t(offset));
+    if (read < 0 && errno == EINTR) continue;
+    if (read <= 0) return false;
+    offset += size_t(read), into = into.subspan(size_t(read));
+  }
+  return true;
+}
+
+/// `read_file` for files that may be large: memory is not set to 0 first, and processors share the copying.
+std::optional<KeptBytes> read_in_parallel(const fs::path& path, LoadBudget& budget) {
+  constexpr size_t kPiece = size_t{1} << 22;
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return std::nullopt;
+  const size_t size = fs::file_size(path, error);
+  const OpenFile file(path);
+  if (error || file.descriptor < 0) return std::nullopt;
+  budget.take_file(path.string(), size);
+  const std::shared_ptr<uint8_t[]> bytes(new uint8_t[size]);
+  std::atomic<bool> complete{true};
+  for_each_in_parallel((size + kPiece - 1) / kPiece, [&](size_t piece) {
+    const size_t first = piece * kPiece;
+    if (!read_at(file.descriptor, first, {bytes.get() + first, std::min(kPiece, size - first)})) complete = false;
+  });
+  if (!complete) return std::nullopt;
+  return KeptBytes{bytes, {bytes.get(), size}};
+}
+
 }  // namespace
 
 std::optional<Bytes> read_file(const fs::path& path, LoadBudget& budget) {
@@ -125,7 +171,12 @@ std::optional<Bytes> read_file(const fs::path& path, LoadBudget& budget) {
   return bytes;
 }
 
-GltfDocument parse_gltf_document(Bytes file, const fs::path& path, LoadBudget& budget) {
+KeptBytes keep(Bytes bytes) {
+  const auto keeper = std::make_shared<const Bytes>(std::move(bytes));
+  return {keeper, *keeper};
+}
+
+GltfDocument parse_gltf_document(KeptBytes file, const fs::path& path, LoadBudget& budget) {
   const auto text_of = [](std::span<const uint8_t> s) {
     return std::string_view(reinterpret_cast<const char*>(s.data()), s.size());
   };
@@ -133,19 +184,19 @@ GltfDocument parse_gltf_document(Bytes file, const fs::path& path, LoadBudget& b
   GltfDocument document;
   document.json.file = name;
   document.folder = fs::absolute(path).parent_path();
-  if (!text_of(file).starts_with("glTF")) {
-    document.json.root = parse_json(name, text_of(file), budget);
+  if (!text_of(file.bytes).starts_with("glTF")) {
+    document.json.root = parse_json(name, text_of(file.bytes), budget);
     return document;
   }
   document.file = std::move(file);
-  const std::vector<Chunk> chunks = glb_chunks(name, document.file);
+  const std::vector<Chunk> chunks = glb_chunks(name, document.file.bytes);
   document.json.root = parse_json(name, text_of(chunks[0].bytes), budget);
   if (chunks.size() > 1 && chunks[1].type == kBinChunk) document.bin = chunks[1].bytes;
   return document;
 }
 
 GltfDocument read_gltf_document(const fs::path& path, LoadBudget& budget) {
-  auto bytes = read_file(path, budget);
+  auto bytes = read_in_parallel(path, budget);
   if (!bytes) throw LoadError(path.string(), "", "cannot be read, expected a .gltf or .glb file");
   return parse_gltf_document(std::move(*bytes), path, budget);
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,10 +15,16 @@ namespace alhazen {
 
 using Bytes = std::vector<uint8_t>;
 
+/// Bytes and who keeps them.
+struct KeptBytes {
+  std::shared_ptr<const void> keeper;
+  std::span<const uint8_t> bytes;
+};
+
 struct GltfDocument {
   JsonDocument json;             // integral numbers are integers, however they were written
   std::filesystem::path folder;  // where its URIs begin
-  Bytes file;                    // of a GLB, whose chunk is seen by `bin`; else empty
+  KeptBytes file;                // of a GLB, whose chunk is seen by `bin`; else empty
   std::optional<std::span<const uint8_t>> bin;
 };
 
@@ -26,7 +33,10 @@ struct GltfDocument {
 [[nodiscard]] GltfDocument read_gltf_document(const std::filesystem::path& path, LoadBudget& budget);
 
 /// The same of bytes that are in memory already, as if they were the file's at `path`.
-[[nodiscard]] GltfDocument parse_gltf_document(Bytes file, const std::filesystem::path& path, LoadBudget& budget);
+[[nodiscard]] GltfDocument parse_gltf_document(KeptBytes file, const std::filesystem::path& path, LoadBudget& budget);
+
+/// For those above.
+[[nodiscard]] KeptBytes keep(Bytes bytes);
 
 /// All bytes of a regular file; none where it cannot be read. Throws LoadError where it is larger than what is left.
 [[nodiscard]] std::optional<Bytes> read_file(const std::filesystem::path& path, LoadBudget& budget);

@@ -212,7 +212,7 @@ uint32_t word_at(std::span<const uint8_t> file, size_t at) {
 
 void examine_container(Examiner& e) {
   constexpr uint32_t kBin = 0x004E4942;
-  const std::span<const uint8_t> file = e.source.document.file;
+  const std::span<const uint8_t> file = e.source.document.file.bytes;
   if (file.empty()) return;
   e.unless(word_at(file, 8) == file.size(), e.root(), "the GLB's length is not the file's");
   size_t number = 0;

@@ -34,7 +34,7 @@ void keep_places(const std::vector<char>& moving, const std::vector<MeshInstance
 GltfSource source_of(std::vector<uint8_t> bytes, const std::filesystem::path& file, const WarningSink& warn,
                      const std::shared_ptr<LoadBudget>& budget) {
   budget->take_file(file.string(), bytes.size());
-  return check_gltf_source(parse_gltf_document(std::move(bytes), file, *budget), warn, budget);
+  return check_gltf_source(parse_gltf_document(keep(std::move(bytes)), file, *budget), warn, budget);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "loaders/gltf_draco.h"
 #include "loaders/gltf_layers.h"
 #include "loaders/gltf_polygons.h"
+#include "loaders/in_parallel.h"
 #include "loaders/tangents.h"
 
 namespace alhazen {
@@ -21,6 +22,14 @@ std::vector<T> with_room(size_t count) {
   std::vector<T> all;
   all.reserve(count + 2);
   return all;
+}
+
+/// body(first, last) for pieces of 0 to n - 1, in parallel, that fit into a processor's cache.
+template <class Body>
+void for_each_piece(size_t n, const Body& body) {
+  constexpr size_t kPiece = 16384;
+  for_each_in_parallel((n + kPiece - 1) / kPiece,
+                       [&](size_t piece) { body(piece * kPiece, std::min(n, (piece + 1) * kPiece)); });
 }
 
 /// Which of the file's vertices a primitive takes along, and its indices into those.
@@ -92,11 +101,17 @@ class PrimitiveReader {
   }
 
   GltfPrimitive read(bool deformable) {
-    VertexChoice choice = choose_vertices(read_index(), uint32_t(vertex_count_));
-    vertices_ = std::move(choice.vertices);
     GltfPrimitive out{r_, {}, mode_ == TINYGLTF_MODE_TRIANGLES && r_.extension("FB_ngon_encoding"), {}, {}};
     TriangleMesh& part = out.part;
-    part.triangles = triangles_of(draco_ ? TINYGLTF_MODE_TRIANGLES : mode_, choice.index);
+    if (const auto index = plain_index()) {
+      part.triangles = read_triangles(*index);
+      vertices_.resize(vertex_count_);
+      std::iota(vertices_.begin(), vertices_.end(), 0u);
+    } else {
+      VertexChoice choice = choose_vertices(read_index(), uint32_t(vertex_count_));
+      vertices_ = std::move(choice.vertices);
+      part.triangles = triangles_of(draco_ ? TINYGLTF_MODE_TRIANGLES : mode_, choice.index);
+    }
     part.positions = read_vec3("POSITION");
     part.normals = read_vec3("NORMAL");
     if (!part.normals.empty()) part.tangents = read_tangents();  // without normals they count for nothing
@@ -115,6 +130,38 @@ class PrimitiveReader {
     return buffers_.accessor(attributes_[key].as<int>());
   }
 
+  const AccessorView& index_accessor(const JsonRef& at) const {
+    const AccessorView& accessor = buffers_.accessor(at.as<int>());
+    if (accessor.components != 1 || !accessor.is_unsigned_integer()) at.expected("an accessor of unsigned integers");
+    return accessor;
+  }
+
+  void check_indices(const JsonRef& at, std::span<const uint32_t> index) const {
+    for (const uint32_t i : index)
+      if (i >= vertex_count_)
+        at.fail("index " + std::to_string(i) + " out of range, POSITION has " + std::to_string(vertex_count_) +
+                " vertices");
+  }
+
+  /// Where triangles' indices stand as they are wanted: of all vertices.
+  std::optional<JsonRef> plain_index() const {
+    const auto at = r_.find("indices");
+    if (draco_ || mode_ != TINYGLTF_MODE_TRIANGLES || !at) return std::nullopt;
+    const uint64_t count = index_accessor(*at).count;
+    return count % 3 == 0 && count >= vertex_count_ / 2 ? at : std::nullopt;
+  }
+
+  std::vector<std::array<uint32_t, 3>> read_triangles(const JsonRef& at) const {
+    const AccessorView& accessor = index_accessor(at);
+    std::vector<std::array<uint32_t, 3>> triangles(accessor.count / 3);
+    for_each_piece(triangles.size(), [&](size_t first, size_t last) {
+      const std::span<uint32_t> corners(triangles[first].data(), 3 * (last - first));
+      indices(accessor, 3 * first, corners);
+      check_indices(at, corners);
+    });
+    return triangles;
+  }
+
   std::vector<uint32_t> read_index() {
     if (draco_) return std::move(draco_->index);
     const auto at = r_.find("indices");
@@ -123,13 +170,8 @@ class PrimitiveReader {
       std::iota(all.begin(), all.end(), 0u);
       return all;
     }
-    const AccessorView& accessor = buffers_.accessor(at->as<int>());
-    if (accessor.components != 1 || !accessor.is_unsigned_integer()) at->expected("an accessor of unsigned integers");
-    std::vector<uint32_t> index = indices(accessor);
-    for (const uint32_t i : index)
-      if (i >= vertex_count_)
-        at->fail("index " + std::to_string(i) + " out of range, POSITION has " + std::to_string(vertex_count_) +
-                 " vertices");
+    std::vector<uint32_t> index = indices(index_accessor(*at));
+    check_indices(*at, index);
     return index;
   }
 
@@ -155,11 +197,14 @@ class PrimitiveReader {
     if (!at) return {};
     const AccessorView& accessor = attribute(key);
     check_shape(*at, accessor, components);
-    const std::vector<float> values = floats(accessor, vertices_);
-    check_finite(*at, values);
-    const size_t n = accessor.components;
     auto all = with_room<T>(vertices_.size());
-    for (size_t i = 0; i < values.size(); i += n) all.push_back(make(&values[i], n));
+    all.resize(vertices_.size());
+    for_each_piece(all.size(), [&](size_t first, size_t last) {
+      const std::vector<float> values = floats(accessor, std::span(vertices_).subspan(first, last - first));
+      check_finite(*at, values);
+      const size_t n = accessor.components;
+      for (size_t i = first; i < last; ++i) all[i] = make(&values[(i - first) * n], n);
+    });
     return all;
   }
 

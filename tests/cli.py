@@ -240,6 +240,20 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(run(*bench, "--compare", SCENE).returncode, 3)
         self.assertEqual(run(*bench, "--json", self.file("x/a.json")).returncode, 4)
 
+    def test_bench_says_how_the_hierarchy_was_built(self):
+        bench = ["bench", SCENE, "--size", "32x24", "--threads", "1", "--repeat", "2"]
+        result = run(*bench, "--build", "fast", "--compact", "--no-robust", "--breakdown", "--json", self.file("now.json"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("1 thread, fast, not robust, compact", result.stdout)
+        self.assertRegex(result.stdout, r"Embree alone +[0-9.]+ % +[0-9.]+ ms +[0-9.]+ ns a ray")
+        with open(self.file("now.json"), encoding="utf-8") as file:
+            report = json.load(file)["results"][0]
+        self.assertEqual((report["build"], report["robust"], report["compact"]), ("fast", False, True))
+        self.assertIn("nothing to compare", run(*bench, "--compare", self.file("now.json")).stdout)
+        unknown = run(*bench, "--build", "fat")
+        self.assertEqual(unknown.returncode, 2)
+        self.assertIn("expected one of fast, balanced, best", unknown.stderr)
+
     def test_a_benchmark_scene_is_made_and_rendered(self):
         result = run("make", "balls", "--size", "1", "-o", self.file("balls.glb"))
         self.assertEqual((result.returncode, result.stderr), (0, ""))

@@ -132,6 +132,41 @@ TEST(Render, AFlatGroundHasNoAcneAtAnyScale) {
   }
 }
 
+/// As it is with hierarchies that are built like this.
+std::vector<float> pixels_built(const Scene& scene, const BuildOptions& build) {
+  std::vector<Opacity> opacity;
+  const SurfaceFilter filter = surface_filter(scene, opacity);
+  const AcceleratedScene accelerated(scene.geometry, filter, build);
+  RenderOptions options;
+  options.width = 96, options.height = 64;
+  RenderControl control;
+  return render(scene, accelerated, framing_camera(scene.geometry, 1.5), options, control).color.pixels;
+}
+
+TEST(AcceleratedScene, ShowsTheSameHoweverItIsBuilt) {
+  for (const bool instanced : {false, true}) {
+    const Scene scene = spheres_over_ground(1, instanced);
+    const std::vector<float> balanced = pixels_built(scene, {});
+    for (const BuildQuality quality : {BuildQuality::fast, BuildQuality::balanced, BuildQuality::best})
+      for (const bool compact : {false, true}) {
+        const std::vector<float> pixels = pixels_built(scene, {.quality = quality, .compact = compact});
+        for (size_t i = 0; i < pixels.size(); ++i)
+          ASSERT_NEAR(pixels[i], balanced[i], 1e-4f) << int(quality) << compact << " at " << i;
+      }
+  }
+}
+
+TEST(AcceleratedScene, FastAndBalancedBuildsHaveTheSameBitsOnAnyThreads) {
+  const Scene scene = spheres_over_ground(1, true);
+  for (const BuildQuality quality : {BuildQuality::fast, BuildQuality::balanced}) {
+    const std::vector<float> one = pixels_built(scene, {.quality = quality, .threads = 1});
+    for (const int threads : {2, 3}) {
+      const std::vector<float> more = pixels_built(scene, {.quality = quality, .threads = threads});
+      EXPECT_EQ(std::memcmp(one.data(), more.data(), one.size() * sizeof(float)), 0) << threads;
+    }
+  }
+}
+
 TEST(AcceleratedScene, RaysBeyondItsReachHitNothing) {
   const Scene scene = spheres_over_ground(1, true);
   const AcceleratedScene accelerated(scene.geometry, {});
