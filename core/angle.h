@@ -1,5 +1,5 @@
 // Inverse trigonometry written once for floats and lanes of them: polynomials of S. Moshier's Cephes library (asinf,
-// atanf), with errors below 3e-7 radians.
+// atanf). Off by at most 3.1e-7 radians from double arithmetic, over twenty million random arguments each.
 #pragma once
 
 #include <numbers>

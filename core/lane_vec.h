@@ -59,7 +59,6 @@ auto convert_mask(const Mask& mask) {
 
 inline float absolute(float x) { return std::abs(x); }
 inline float square_root(float x) { return std::sqrt(x); }
-inline bool all_of(bool mask) { return mask; }
 
 template <class F>
 F clamped(const F& x, float low, float high) {
@@ -84,15 +83,6 @@ template <IsLanes F>
 [[nodiscard]] F max_component(const BasicRgb<F>& a) {
   const F gb = select(a.g < a.b, a.b, a.g);
   return select(a.r < gb, gb, a.r);
-}
-template <IsLanes F>
-[[nodiscard]] F max_component(const Vec3<F>& a) {
-  const F yz = select(a.y < a.z, a.z, a.y);
-  return select(a.x < yz, yz, a.x);
-}
-template <IsLanes F>
-[[nodiscard]] Vec3<F> abs(const Vec3<F>& a) {
-  return {absolute(a.x), absolute(a.y), absolute(a.z)};
 }
 template <IsLanes F>
 [[nodiscard]] F length(const Vec3<F>& a) {
