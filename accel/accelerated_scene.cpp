@@ -77,6 +77,11 @@ struct AcceleratedScene::Impl {
     if (device) rtcReleaseDevice(device);
   }
 
+  /// On compact scenes it does so as well as on those with instances.
+  [[nodiscard]] bool coherent_occluded_16_hangs() const {
+    return embree::kCoherentOccluded16HangsOnInstances && (has_instances || options.compact);
+  }
+
   struct Ids {
     uint32_t object, part, primitive;
   };
@@ -545,7 +550,7 @@ void AcceleratedScene::transmittance(const RayWave& rays_world, Coherence cohere
   // Coherent occlusion may show a callback the same surface twice, once for each octant of directions in the packet.
   if (impl_->has_filters) coherence = Coherence::incoherent;
   const bool coherent = coherence == Coherence::coherent;
-  const bool hangs = embree::kCoherentOccluded16HangsOnInstances && impl_->has_instances && coherent;
+  const bool hangs = impl_->coherent_occluded_16_hangs() && coherent;
   const int widest = coherent ? impl_->width : impl_->incoherent_width;
   with_width(unsigned(hangs ? std::min(widest, 8) : widest),
              [&](auto width) { Traversal::occlude_packets<width>(*impl_, rays_world, coherence, visible); });
@@ -558,7 +563,7 @@ uint64_t AcceleratedScene::bytes() const noexcept { return impl_->bytes; }
 bool AcceleratedScene::allows(const BareCall& call) const noexcept {
   if (call.width > impl_->width) return false;
   if (!call.shadow || call.coherence == Coherence::incoherent) return true;
-  const bool hangs = embree::kCoherentOccluded16HangsOnInstances && impl_->has_instances && call.width == 16;
+  const bool hangs = impl_->coherent_occluded_16_hangs() && call.width == 16;
   return !hangs && !impl_->has_filters;
 }
 

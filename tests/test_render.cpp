@@ -189,11 +189,10 @@ TEST(AcceleratedScene, RaysBeyondItsReachHitNothing) {
   }
 }
 
-TEST(AcceleratedScene, CoherentShadowsAfterIncoherentRaysOnInstancesReturn) {
-  // The sequence on which Embree 3.13.5 does not return with 16-wide coherent shadow packets: the test's time limit is
-  // the claim.
-  const Scene scene = spheres_over_ground(1, true);
-  const AcceleratedScene accelerated(scene.geometry, {});
+/// The sequence on which Embree 3.13.5 does not return with 16-wide coherent shadow packets: the test's time limit is
+/// the claim.
+void trace_shadows_after_incoherent_rays(const Scene& scene, const BuildOptions& build) {
+  const AcceleratedScene accelerated(scene.geometry, {}, build);
   std::mt19937 rng(5);
   std::uniform_real_distribution<float> u(-1, 1);
   RayWave wave;
@@ -204,6 +203,19 @@ TEST(AcceleratedScene, CoherentShadowsAfterIncoherentRaysOnInstancesReturn) {
   accelerated.intersect(wave, Coherence::incoherent, hits);
   accelerated.transmittance(wave, Coherence::coherent, visible);
   EXPECT_EQ(visible.size(), wave.size());
+}
+
+TEST(AcceleratedScene, CoherentShadowsAfterIncoherentRaysOnInstancesReturn) {
+  trace_shadows_after_incoherent_rays(spheres_over_ground(1, true), {});
+}
+
+TEST(AcceleratedScene, CoherentShadowsAfterIncoherentRaysReturnHoweverItIsBuilt) {
+  Scene scene = spheres_over_ground(1, false);
+  scene.geometry.meshes[0].parts = {ground(8, 100)};
+  for (const BuildQuality quality : {BuildQuality::fast, BuildQuality::balanced, BuildQuality::best})
+    for (const bool compact : {false, true})
+      for (const bool robust : {false, true})
+        trace_shadows_after_incoherent_rays(scene, {.quality = quality, .robust = robust, .compact = compact});
 }
 
 }  // namespace
