@@ -43,6 +43,8 @@ void add_limit_options(CLI::App& command, LoadLimits& limits) {
       ->type_name("N")
       ->default_str("4096");
   add_amount(command, "--max-json", limits.json, "Size that the JSON may have")->type_name("SIZE")->default_str("256M");
+  command.add_flag("--ignore-required", limits.ignore_required,
+                   "Take files that require extensions which are not known here, and leave these out");
 }
 
 }  // namespace alhazen

@@ -333,6 +333,7 @@ RenderArguments still_arguments(const RenderArguments& arguments) {
 std::string picture_options(const RenderArguments& arguments) {
   const RenderOptions& options = arguments.options;
   std::string text = "--size " + std::to_string(options.width) + "x" + std::to_string(options.height);
+  if (arguments.limits.ignore_required) text += " --ignore-required";
   if (!arguments.choice.scene.empty()) text += " --scene '" + arguments.choice.scene + "'";
   if (!arguments.choice.variant.empty()) text += " --variant '" + arguments.choice.variant + "'";
   if (!arguments.time.animation.empty()) text += " --animation '" + arguments.time.animation + "'";

@@ -12,9 +12,9 @@ namespace {
 
 using nlohmann::json;
 
-/// What the file names, each once. A required one that is not known is an error; of one that is known and ignored, what
-/// it brings is left out of the picture, with a warning.
-std::vector<Extension> read_extensions(const JsonRef& root, Warnings& warn) {
+/// What the file names, each once. A required one that is not known is an error, or ignored; of one that is known and
+/// ignored, what it brings is left out of the picture, with a warning.
+std::vector<Extension> read_extensions(const JsonRef& root, bool ignore_required, Warnings& warn) {
   std::vector<Extension> all;
   const auto add = [&](const std::string& name, bool required) {
     const auto known = std::find_if(all.begin(), all.end(), [&](const Extension& e) { return e.name == name; });
@@ -27,7 +27,8 @@ std::vector<Extension> read_extensions(const JsonRef& root, Warnings& warn) {
   }
   for (const JsonRef& r : required) {
     const auto name = r.as<std::string>();
-    if (!is_known(name)) r.fail("requires the extension " + name + ", which is not supported");
+    if (!is_known(name) && !ignore_required)
+      r.fail("requires the extension " + name + ", which is not supported; --ignore-required renders what is left");
     add(name, true);
   }
   std::string ignored;
@@ -119,7 +120,7 @@ GltfSource check_gltf_source(GltfDocument document, const WarningSink& sink, std
   budget->progress.begin("checking");
   check_gltf(root);
   take_elements(root, *budget);
-  std::vector<Extension> extensions = read_extensions(root, warn);
+  std::vector<Extension> extensions = read_extensions(root, budget->limits().ignore_required, warn);
   tinygltf::Model model = parse_core(document.json);
   return {std::move(document), std::move(model), std::move(extensions), std::move(warn), std::move(budget)};
 }

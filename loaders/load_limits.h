@@ -16,6 +16,7 @@ struct LoadLimits {
   uint64_t json = uint64_t{1} << 28;          // bytes
   uint64_t image_pixels = uint64_t{1} << 28;  // of one image
   uint64_t node_depth = 4096;                 // nodes from a root to the deepest below it
+  bool ignore_required = false;               // takes files that require extensions that nobody knows
 };
 
 /// How far loading is, for another thread to watch.

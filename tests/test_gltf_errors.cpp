@@ -293,7 +293,24 @@ TEST(GltfErrors, AnExtensionThatIsRequiredButNotKnownIsAnErrorThatNamesIt) {
   document["extensionsRequired"].push_back("ACME_unheard");
   const std::string error = error_of(document);
   EXPECT_TRUE(error.starts_with("/extensionsRequired/"));
-  EXPECT_TRUE(error.ends_with(": requires the extension ACME_unheard, which is not supported"));
+  EXPECT_TRUE(error.ends_with(
+      ": requires the extension ACME_unheard, which is not supported; --ignore-required renders what is left"));
+}
+
+TEST(GltfErrors, AnExtensionThatIsRequiredButNotKnownIsAWarningWhereThatIsAskedFor) {
+  json document = everything();
+  document["extensionsRequired"].push_back("ACME_unheard");
+  const std::string text = document.dump();
+  std::vector<std::string> warnings;
+  const LoadedScene loaded = load_gltf(
+      {text.begin(), text.end()}, "scene.gltf", [&](const std::string& w) { warnings.push_back(w); }, {},
+      std::make_shared<LoadBudget>(LoadLimits{.ignore_required = true}));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(
+      warnings[0],
+      "scene.gltf: /extensionsRequired: requires ACME_unheard, which is ignored: not known, what it brings is left "
+      "out");
+  EXPECT_FALSE(loaded.scene.geometry.meshes.empty());
 }
 
 TEST(GltfErrors, AnExtensionThatIsRequiredAndKnownButIgnoredGivesAWarningAndAPicture) {
