@@ -20,6 +20,7 @@
 #include "apps/usage.h"
 #include "core/error.h"
 #include "loaders/image_file.h"
+#include "loaders/image_library.h"
 
 namespace alhazen {
 namespace {
@@ -60,12 +61,7 @@ int fail(const char* what, ExitStatus status) {
   return int(status);
 }
 
-}  // namespace
-}  // namespace alhazen
-
-int main(int argc, char** argv) {
-  using namespace alhazen;
-  catch_signals();
+int run_or_fail(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const Error& error) {
@@ -77,4 +73,14 @@ int main(int argc, char** argv) {
   } catch (...) {
     return fail("unknown error", ExitStatus::internal);
   }
+}
+
+}  // namespace
+}  // namespace alhazen
+
+int main(int argc, char** argv) {
+  alhazen::catch_signals();
+  const int status = alhazen::run_or_fail(argc, argv);
+  alhazen::await_image_library();
+  return status;
 }

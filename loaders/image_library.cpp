@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+#include <chrono>
 #include <future>
 #include <mutex>
 
@@ -24,19 +25,33 @@ const ImageLibrary* load() {
               ExitStatus::internal);
 }
 
-/// The one loading that there is, begun if need be. At the program's end its destructor waits for a thread that loads.
-std::shared_future<const ImageLibrary*> loading(std::launch how) {
-  static std::mutex mutex;
-  static std::shared_future<const ImageLibrary*> future;
-  const std::lock_guard lock(mutex);
-  if (!future.valid()) future = std::async(how, load).share();
-  return future;
+/// The one loading that there is, once it is begun.
+struct Loading {
+  std::mutex mutex;
+  std::shared_future<const ImageLibrary*> library;
+};
+Loading& loading() {
+  static Loading only;
+  return only;
+}
+
+std::shared_future<const ImageLibrary*> begin(std::launch how) {
+  const std::lock_guard lock(loading().mutex);
+  if (!loading().library.valid()) loading().library = std::async(how, load).share();
+  return loading().library;
 }
 
 }  // namespace
 
-const ImageLibrary& image_library() { return *loading(std::launch::deferred).get(); }
+const ImageLibrary& image_library() { return *begin(std::launch::deferred).get(); }
 
-void preload_image_library() { (void)loading(std::launch::async); }
+void preload_image_library() { (void)begin(std::launch::async); }
+
+void await_image_library() noexcept {
+  const std::lock_guard lock(loading().mutex);
+  // Loading that is deferred has no thread.
+  if (loading().library.valid() && loading().library.wait_for(std::chrono::seconds(0)) == std::future_status::timeout)
+    loading().library.wait();
+}
 
 }  // namespace alhazen

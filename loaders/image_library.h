@@ -82,4 +82,8 @@ struct ImageLibrary {
 /// Starts loading it beside what else goes on: call this as soon as it is known that it will be needed.
 void preload_image_library();
 
+/// Waits while it is being loaded. To be called before the program ends: handlers for the end that a library has set up
+/// already would run beside the rest of its start.
+void await_image_library() noexcept;
+
 }  // namespace alhazen
