@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -31,6 +32,10 @@ constexpr RTCBuildQuality embree_quality(BuildQuality quality) {
          : quality == BuildQuality::best ? RTC_BUILD_QUALITY_HIGH
                                          : RTC_BUILD_QUALITY_MEDIUM;
 }
+
+/// Of directions in a packet that is traced as one: beyond it, its rays meet too many nodes that only some of them
+/// need.
+constexpr float kLeastCosine = 0.9f;
 
 /// What a top-level geometry number stands for.
 struct TopEntry {
@@ -146,62 +151,109 @@ struct AcceleratedScene::Traversal {
     if (wave.time.size() > 0) std::memcpy(ray.time, &wave.time[first], bytes);
   }
 
-  /// -1 for the lanes that hold rays that traversal can take, else 0: those out of reach, and those that are not
-  /// numbers, hit nothing.
+  /// The lanes that hold rays that traversal can take, and -1 for each in `valid`, else 0: those out of reach, and
+  /// those that are not numbers, hit nothing.
   template <int width>
-  static void choose_lanes(const Impl& impl, const RayWave& wave, size_t first, int lanes, int* valid) {
+  static uint32_t choose_lanes(const Impl& impl, const RayWave& wave, size_t first, int lanes, int* valid) {
     const auto within = [&](const Vec3Lanes& v) {
       const auto below = [&](const Lanes<float>& row) {
         return absolute(FloatLanes<width>(&row[first], std::experimental::element_aligned)) < impl.reach;
       };
       return below(v.x) && below(v.y) && below(v.z);
     };
-    const uint32_t bits = lane_bits(within(wave.origin) && within(wave.direction));
-    for (int i = 0; i < width; ++i) valid[i] = i < lanes ? -int(bits >> i & 1) : 0;
+    const uint32_t bits = lane_bits(within(wave.origin) && within(wave.direction)) & ((1u << lanes) - 1);
+    for (int i = 0; i < width; ++i) valid[i] = -int(bits >> i & 1);
+    return bits;
+  }
+
+  /// Whether a packet's rays run side by side, so that they meet mostly the same nodes.
+  template <int width>
+  static bool run_together(const RayWave& wave, size_t first, uint32_t lanes) {
+    using F = FloatLanes<width>;
+    if (lanes == 0) return false;
+    const auto row = [&](const Lanes<float>& of) { return F(&of[first], std::experimental::element_aligned); };
+    const F x = row(wave.direction.x), y = row(wave.direction.y), z = row(wave.direction.z);
+    const F squared = x * x + y * y + z * z;
+    const auto lead = size_t(std::countr_zero(lanes));
+    const F along = x * F(x[lead]) + y * F(y[lead]) + z * F(z[lead]);
+    const auto apart = along < 0 || along * along < squared * F(kLeastCosine * kLeastCosine * squared[lead]);
+    return (lane_bits(apart) & lanes) == 0;
+  }
+
+  template <int width>
+  static bool are_of_one_octant(const RayWave& wave, size_t first, uint32_t lanes) {
+    const auto alike = [&](const Lanes<float>& row) {
+      uint32_t negative = 0;
+      for (size_t k = 0; k < width; ++k) negative |= uint32_t(std::signbit(row[first + k])) << k;
+      negative &= lanes;
+      return negative == 0 || negative == lanes;
+    };
+    return alike(wave.direction.x) && alike(wave.direction.y) && alike(wave.direction.z);
+  }
+
+  /// Which packets may be traced as one.
+  enum class Joining : uint8_t { none, one_octant, any };
+
+  /// Calls `trace(query, packet's first ray, rays of it, lanes to trace as `valid`)` for each packet, with the query
+  /// that suits it: for rays that run together, as far as that is allowed, or for others.
+  template <int width, class Trace>
+  static void for_each_packet(const Impl& impl, const RayWave& wave, Coherence coherence, Joining allowed, Rgb* visible,
+                              const Trace& trace) {
+    Query apart(impl, Coherence::incoherent, visible), together(impl, Coherence::coherent, visible);
+    const size_t n = wave.size();
+    for (size_t first = 0; first < n; first += width) {
+      const int rays = int(std::min(size_t(width), n - first));
+      alignas(64) int valid[width];
+      const uint32_t lanes = choose_lanes<width>(impl, wave, first, rays, valid);
+      const bool joined = width > 1 && allowed != Joining::none &&
+                          (coherence == Coherence::coherent || run_together<width>(wave, first, lanes)) &&
+                          (allowed == Joining::any || are_of_one_octant<width>(wave, first, lanes));
+      trace(joined ? together : apart, first, rays, valid);
+    }
   }
 
   template <int width>
   static void intersect_packets(const Impl& impl, const RayWave& wave, Coherence coherence, HitWave& hits) {
-    Query query(impl, coherence, nullptr);
-    const size_t n = wave.size();
-    for (size_t first = 0; first < n; first += width) {
-      const int lanes = int(std::min(size_t(width), n - first));
-      alignas(64) typename embree::Packets<width>::RayHit packet;
-      alignas(64) int valid[width];
-      choose_lanes<width>(impl, wave, first, lanes, valid);
-      for (int i = 0; i < width; ++i) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-      load_rays(wave, first, width, packet.ray);
-      for (RTCScene scene : impl.scenes)
-        if (scene) embree::intersect<width>(valid, scene, query, packet);
-      constexpr size_t kBytes = size_t(width) * sizeof(float);
-      std::memcpy(&hits.t[first], packet.ray.tfar, kBytes);
-      std::memcpy(&hits.u[first], packet.hit.u, kBytes), std::memcpy(&hits.v[first], packet.hit.v, kBytes);
-      for (int i = 0; i < lanes; ++i) {
-        const size_t k = first + size_t(i);
-        hits.object[k] = kNone;
-        if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-        const Impl::Ids ids =
-            impl.ids(packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i], packet.hit.u[i]);
-        hits.object[k] = ids.object, hits.part[k] = ids.part, hits.primitive[k] = ids.primitive;
-      }
-    }
+    for_each_packet<width>(
+        impl, wave, coherence, Joining::any, nullptr, [&](Query& query, size_t first, int rays, int* valid) {
+          alignas(64) typename embree::Packets<width>::RayHit packet;
+          for (int i = 0; i < width; ++i) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+          load_rays(wave, first, width, packet.ray);
+          for (RTCScene scene : impl.scenes)
+            if (scene) embree::intersect<width>(valid, scene, query, packet);
+          constexpr size_t kBytes = size_t(width) * sizeof(float);
+          std::memcpy(&hits.t[first], packet.ray.tfar, kBytes);
+          std::memcpy(&hits.u[first], packet.hit.u, kBytes), std::memcpy(&hits.v[first], packet.hit.v, kBytes);
+          for (int i = 0; i < rays; ++i) {
+            const size_t k = first + size_t(i);
+            hits.object[k] = kNone;
+            if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+            const Impl::Ids ids =
+                impl.ids(packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i], packet.hit.u[i]);
+            hits.object[k] = ids.object, hits.part[k] = ids.part, hits.primitive[k] = ids.primitive;
+          }
+        });
+  }
+
+  /// Coherent occlusion may show a callback the same surface twice, once for each octant of directions in the packet,
+  /// so that filters would count it twice.
+  static Joining occlusion_joining(const Impl& impl, int width) {
+    if (width == 16 && impl.coherent_occluded_16_hangs()) return Joining::none;
+    return impl.has_filters ? Joining::one_octant : Joining::any;
   }
 
   template <int width>
   static void occlude_packets(const Impl& impl, const RayWave& wave, Coherence coherence, Lanes<Rgb>& visible) {
-    Query query(impl, coherence, visible.data());
-    const size_t n = wave.size();
-    for (size_t first = 0; first < n; first += width) {
-      const int lanes = int(std::min(size_t(width), n - first));
-      alignas(64) typename embree::Packets<width>::Ray packet;
-      alignas(64) int valid[width];
-      choose_lanes<width>(impl, wave, first, lanes, valid);
-      load_rays(wave, first, width, packet);
-      for (RTCScene scene : impl.scenes)  // what is blocked in the first is not looked at in the second
-        if (scene) embree::occluded<width>(valid, scene, query, packet);
-      for (int i = 0; i < lanes; ++i)
-        if (packet.tfar[i] < 0) visible[first + size_t(i)] = Rgb(0.0f);
-    }
+    for_each_packet<width>(
+        impl, wave, coherence, occlusion_joining(impl, width), visible.data(),
+        [&](Query& query, size_t first, int rays, int* valid) {
+          alignas(64) typename embree::Packets<width>::Ray packet;
+          load_rays(wave, first, width, packet);
+          for (RTCScene scene : impl.scenes)  // what is blocked in the first is not looked at in the second
+            if (scene) embree::occluded<width>(valid, scene, query, packet);
+          for (int i = 0; i < rays; ++i)
+            if (packet.tfar[i] < 0) visible[first + size_t(i)] = Rgb(0.0f);
+        });
   }
 
   /// The calls without their preparations.
@@ -210,28 +262,33 @@ struct AcceleratedScene::Traversal {
     struct alignas(64) Packet {
       typename embree::Packets<width>::RayHit rays;
       int valid[width];
+      bool joined;
     };
     Lanes<Rgb> visible;
     visible.resize(wave.size());
     for (size_t i = 0; i < wave.size(); ++i) visible[i] = Rgb(1.0f);
     static thread_local std::vector<Packet> packets;
     packets.resize((wave.size() + width - 1) / width);
+    const Joining joining = call.shadow ? occlusion_joining(impl, width) : Joining::any;
     for (size_t k = 0; k < packets.size(); ++k) {
       Packet& packet = packets[k];
       const size_t first = k * width;
-      choose_lanes<width>(impl, wave, first, int(std::min(size_t(width), wave.size() - first)), packet.valid);
+      const int rays = int(std::min(size_t(width), wave.size() - first));
+      const uint32_t lanes = choose_lanes<width>(impl, wave, first, rays, packet.valid);
+      packet.joined = call.coherence == Coherence::coherent &&
+                      (joining == Joining::any || are_of_one_octant<width>(wave, first, lanes));
       for (int i = 0; i < width; ++i)
         packet.rays.hit.geomID[i] = packet.rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
       load_rays(wave, first, width, packet.rays.ray);
     }
-    Query query(impl, call.coherence, visible.data());
+    Query apart(impl, Coherence::incoherent, visible.data()), together(impl, Coherence::coherent, visible.data());
     const auto intersect = [&](Packet& packet) {
       for (RTCScene scene : impl.scenes)
-        if (scene) embree::intersect<width>(packet.valid, scene, query, packet.rays);
+        if (scene) embree::intersect<width>(packet.valid, scene, packet.joined ? together : apart, packet.rays);
     };
     const auto occlude = [&](Packet& packet) {
       for (RTCScene scene : impl.scenes)
-        if (scene) embree::occluded<width>(packet.valid, scene, query, packet.rays.ray);
+        if (scene) embree::occluded<width>(packet.valid, scene, packet.joined ? together : apart, packet.rays.ray);
     };
     const auto start = std::chrono::steady_clock::now();
     if (call.shadow)
@@ -547,12 +604,7 @@ void AcceleratedScene::transmittance(const RayWave& rays_world, Coherence cohere
                                      Lanes<Rgb>& visible) const noexcept {
   visible.resize(rays_world.size());
   for (size_t i = 0; i < rays_world.size(); ++i) visible[i] = Rgb(1.0f);
-  // Coherent occlusion may show a callback the same surface twice, once for each octant of directions in the packet.
-  if (impl_->has_filters) coherence = Coherence::incoherent;
-  const bool coherent = coherence == Coherence::coherent;
-  const bool hangs = impl_->coherent_occluded_16_hangs() && coherent;
-  const int widest = coherent ? impl_->width : impl_->incoherent_width;
-  with_width(unsigned(hangs ? std::min(widest, 8) : widest),
+  with_width(coherence == Coherence::coherent ? impl_->width : impl_->incoherent_width,
              [&](auto width) { Traversal::occlude_packets<width>(*impl_, rays_world, coherence, visible); });
 }
 
@@ -562,9 +614,8 @@ uint64_t AcceleratedScene::bytes() const noexcept { return impl_->bytes; }
 
 bool AcceleratedScene::allows(const BareCall& call) const noexcept {
   if (call.width > impl_->width) return false;
-  if (!call.shadow || call.coherence == Coherence::incoherent) return true;
-  const bool hangs = impl_->coherent_occluded_16_hangs() && call.width == 16;
-  return !hangs && !impl_->has_filters;
+  return !call.shadow || call.coherence == Coherence::incoherent ||
+         Traversal::occlusion_joining(*impl_, call.width) != Traversal::Joining::none;
 }
 
 double AcceleratedScene::seconds_of(const BareCall& call, const RayWave& rays_world) const {

@@ -13,6 +13,7 @@ struct Vec3Lanes {
   void resize(size_t n) { x.resize(n), y.resize(n), z.resize(n); }
   [[nodiscard]] Vec3f get(size_t i) const { return {x[i], y[i], z[i]}; }
   void set(size_t i, const Vec3f& v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
+  void append(const Vec3Lanes& other) { x.append(other.x), y.append(other.y), z.append(other.z); }
 };
 
 /// World-space rays. Lane i of every array is ray i.
@@ -27,6 +28,15 @@ struct RayWave {
   void set(size_t i, const Rayf& r) {
     origin.set(i, r.origin), direction.set(i, r.direction);
     t_min[i] = r.t_min, t_max[i] = r.t_max;
+  }
+  void push(const Rayf& ray) {
+    resize(size() + 1);
+    set(size() - 1, ray);
+  }
+  /// Without `time`.
+  void append(const RayWave& other) {
+    origin.append(other.origin), direction.append(other.direction);
+    t_min.append(other.t_min), t_max.append(other.t_max);
   }
 };
 
@@ -43,8 +53,8 @@ struct HitWave {
   }
 };
 
-/// Whether neighbouring rays of a wave run side by side. The traversal is several times faster where they do and are
-/// said to, and half as fast where they are said to and do not.
+/// Whether neighbouring rays of a wave are known to run side by side; else each packet is looked at. The traversal is
+/// several times faster where they do and it is told so, and half as fast where it is told so and they do not.
 enum class Coherence : uint8_t { incoherent, coherent };
 
 }  // namespace alhazen

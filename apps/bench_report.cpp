@@ -22,7 +22,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array kKindNames{"camera", "camera_shadow", "bounced", "bounced_shadow"};
 constexpr std::array kKindTitles{"camera", "their shadow", "bounced", "their shadow"};
-constexpr std::array kPhaseNames{"generation", "traversal", "shading", "film"};
+constexpr std::array kPhaseNames{"generation", "traversal", "surfaces", "textures", "shading", "film"};
 static_assert(kPhaseNames.size() == kPhases && kKindNames.size() == kWaveKinds && kKindTitles.size() == kWaveKinds);
 constexpr double kSignificance = 0.01, kLeastChange = 0.01;
 

@@ -138,6 +138,20 @@ double measure_frame(const Subject& subject, FrameBench& result) {
   return seconds;
 }
 
+/// How one more frame, whose clock splits shading and takes time for it, divides it.
+void split_shading(const Subject& subject, FrameBench& result) {
+  constexpr std::array kParts{Phase::surface_points, Phase::textures, Phase::shading};
+  RenderControl control;
+  control.splits_shading = true;
+  (void)render(subject.loaded.scene, *subject.accelerated, subject.camera, result.options, control);
+  double all = 0;
+  for (const Phase part : kParts) all += double(control.phase_ns[size_t(part)]);
+  const double shading = result.phase_s[size_t(Phase::shading)];
+  if (all > 0)
+    for (const Phase part : kParts)
+      result.phase_s[size_t(part)] = shading * double(control.phase_ns[size_t(part)]) / all;
+}
+
 FrameBench measure(const Subject& subject, const RenderOptions& options, int threads, int repeats) {
   FrameBench result = subject.costs;
   result.options = options, result.options.threads = result.threads = threads;
@@ -156,6 +170,7 @@ FrameBench measure(const Subject& subject, const RenderOptions& options, int thr
     result.single_s.push_back(sum(replay(*subject.accelerated, log, single, arena)) / threads);
   }
   for (double& seconds : result.phase_s) seconds /= repeats;
+  split_shading(subject, result);
   return result;
 }
 

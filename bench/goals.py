@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Measures what docs/benchmarks.md sets as goals, but for efficiency: goals.py PROGRAM [ROW...]
+"""Measures what docs/benchmarks.md sets as goals: goals.py PROGRAM [ROW...] [FILE...]
 
-Rows: start load fast memory instances scaling. Scenes are made in a folder that is removed again. Times are ratios
-within one run of the program where the goal is one; other work on the machine makes the absolute ones larger.
+Rows: start load fast memory instances scaling efficiency signature; without any, all. Scenes are made in a folder that
+is removed again. Times are ratios within one run of the program where the goal is one; other work on the machine makes
+the absolute ones larger. `efficiency` and `signature` also take the files given: those without a light of their own get
+point lights, three where they have textures and one where not.
 """
 import array
 import json
@@ -72,6 +74,44 @@ def write_glb(path, mesh, lights=1, places=None, camera_at=(0, 1.2, 1.9)):
     return path
 
 
+def relit(folder, file):
+    """The file, with point lights about it if it has no light: a copy beside it would lose its images, so that the
+    copy's URIs lead back."""
+    info = json.loads(subprocess.run([PROGRAM, "info", "--json", file], check=True, capture_output=True, text=True).stdout)
+    if info["lights"]:
+        return file
+    with open(file, "rb") as scene:
+        data = scene.read()
+    binary = data[:4] == b"glTF"
+    length = struct.unpack_from("<I", data, 12)[0] if binary else len(data)
+    document = json.loads(data[20:20 + length] if binary else data)
+    low, high = info["bounds"]["min"], info["bounds"]["max"]
+    size = math.dist(low, high)
+    lights = 3 if document.get("images") else 1
+    nodes = document.setdefault("nodes", [])
+    for k in range(lights):
+        angle = 0.7 + 2 * math.pi * k / 3
+        at = [(a + b) / 2 + size * d for a, b, d in zip(low, high, (math.sin(angle), 0.8, math.cos(angle)))]
+        document["scenes"][document.get("scene", 0)]["nodes"].append(len(nodes))
+        nodes.append({"translation": at, "extensions": {"KHR_lights_punctual": {"light": 0}}})
+    document.setdefault("extensions", {})["KHR_lights_punctual"] = {
+        "lights": [{"type": "point", "intensity": 6 * size * size / lights}]}
+    document.setdefault("extensionsUsed", []).append("KHR_lights_punctual")
+    for item in document.get("buffers", []) + document.get("images", []):
+        if not item.get("uri", "data:").startswith("data:"):
+            item["uri"] = os.path.relpath(os.path.join(os.path.dirname(os.path.abspath(file)), item["uri"]), folder)
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    path = os.path.join(folder, "relit-" + os.path.basename(file))
+    with open(path, "wb") as out:
+        if binary:
+            rest = data[20 + length:]
+            out.write(struct.pack("<4sIIII", b"glTF", 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A) + text + rest)
+        else:
+            out.write(text)
+    return path
+
+
 def run(*arguments):
     """Wall and processor seconds."""
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
@@ -92,7 +132,7 @@ def least(f, times=5):
     return min(f() for _ in range(times))
 
 
-def start(folder):
+def start(folder, _):
     scene = os.path.join(folder, "empty.gltf")
     with open(scene, "w", encoding="utf-8") as file:
         file.write('{"asset": {"version": "2.0"}}')
@@ -102,7 +142,7 @@ def start(folder):
         print(f"start and exit, empty scene, {name}: {1e3 * wall:.0f} ms ({1e3 * processor:.0f} ms of processor)")
 
 
-def load(folder):
+def load(folder, _):
     for triangles in (1e6, 1e7):
         scene = write_glb(os.path.join(folder, "hills.glb"), hills(triangles))
         runs = [bench(scene, repeat=1)[0] for _ in range(5)]
@@ -113,7 +153,7 @@ def load(folder):
               f"loading {1e-9 * speed:.2f} GB/s")
 
 
-def fast(folder):
+def fast(folder, _):
     scene = write_glb(os.path.join(folder, "hills.glb"), hills(1e6))
     rows = {}
     for _ in range(5):
@@ -135,14 +175,14 @@ def fast(folder):
               f"traversal {traversal:.2f}")
 
 
-def memory(folder):
+def memory(folder, _):
     scene = write_glb(os.path.join(folder, "hills.glb"), hills(1e6))
     peak = json.loads(subprocess.run([PROGRAM, "render", scene, "-o", scene + ".exr", "--size", "1024x1024", "--progress",
                                       "json"], check=True, capture_output=True, text=True).stdout.splitlines()[-1])
     print(f"peak memory, 1e6 triangles, 1024x1024, robust: {1e-6 * peak['peak_bytes']:.0f} MB")
 
 
-def instances(folder):
+def instances(folder, _):
     places = array.array("f")
     for k in range(1000000):
         places.extend((2.5 * (k % 100) - 125, 2.5 * (k // 100 % 100) - 125, -2.5 * (k // 10000)))
@@ -154,7 +194,7 @@ def instances(folder):
           f"{1e-6 * done['peak_bytes']:.0f} MB")
 
 
-def scaling(folder):
+def scaling(folder, _):
     def frame(scene, size, *arguments):
         results = bench(scene, *arguments, size=size, repeat=9)
         return [(min(r["frame_s"]), min(r["traversal_s"])) for r in results]
@@ -172,10 +212,34 @@ def scaling(folder):
     print(f"threads x 2: {one[0] / two[0]:.2f} times as fast")
 
 
-ROWS = {"start": start, "load": load, "fast": fast, "memory": memory, "instances": instances, "scaling": scaling}
+def efficiency(folder, files):
+    scenes = [write_glb(os.path.join(folder, "hills.glb"), hills(1e6))]
+    for name in ("balls", "rings", "tetra"):
+        scenes.append(os.path.join(folder, name + ".glb"))
+        run("make", name, "-o", scenes[-1])
+    for scene in scenes + [relit(folder, file) for file in files]:
+        for result in bench(scene, "--threads", f"1,{os.cpu_count()}", size="1024x1024", repeat=9):
+            frame = sorted(result["frame_s"])[4]
+            shares = ", ".join(f"{name} {100 * seconds / frame:.0f} %" for name, seconds in result["phase_s"].items())
+            ratio = statistics.median(t / f for t, f in zip(result["traversal_s"], result["frame_s"]))
+            single = statistics.median(f / s for s, f in zip(result["single_ray_traversal_s"], result["frame_s"]))
+            print(f"{os.path.basename(scene)}, {result['threads']} threads, robust: efficiency {ratio:.2f}; frame {single:.2f} x "
+                  f"single rays alone; {frame:.2f} s: {shares}", flush=True)
+
+
+def signature(folder, files):
+    for scene in [write_glb(os.path.join(folder, "hills.glb"), hills(1e6))] + files:
+        result, = bench(scene, "--threads", "1", "--integrator", "signature", size="1024x1024", repeat=15)
+        ratio = statistics.median(t / f for t, f in zip(result["traversal_s"], result["frame_s"]))
+        print(f"{os.path.basename(scene)}, signature, 1 thread, robust: efficiency {ratio:.2f}")
+
+
+ROWS = {"start": start, "load": load, "fast": fast, "memory": memory, "instances": instances, "scaling": scaling,
+        "efficiency": efficiency, "signature": signature}
 
 if __name__ == "__main__":
-    for row in sys.argv[2:] or ROWS:
+    given = sys.argv[2:]
+    for row in [name for name in given if name in ROWS] or ROWS:
         with tempfile.TemporaryDirectory() as work:
-            ROWS[row](work)
+            ROWS[row](work, [os.path.abspath(name) for name in given if name not in ROWS])
             sys.stdout.flush()

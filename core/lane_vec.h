@@ -16,11 +16,15 @@ template <class F>
 struct Wide {
   using Double = double;
   using Int = int32_t;
+  using Uint = uint32_t;
+  using Address = uint64_t;
 };
 template <IsLanes F>
 struct Wide<F> {
   using Double = LanesOf<double, int(F::size())>;
   using Int = LanesOf<int32_t, int(F::size())>;
+  using Uint = LanesOf<uint32_t, int(F::size())>;
+  using Address = LanesOf<uint64_t, int(F::size())>;
 };
 }  // namespace lane_detail
 
@@ -29,6 +33,11 @@ template <class F>
 using DoubleOf = typename lane_detail::Wide<F>::Double;
 template <class F>
 using IntOf = typename lane_detail::Wide<F>::Int;
+template <class F>
+using UintOf = typename lane_detail::Wide<F>::Uint;
+/// As many addresses.
+template <class F>
+using AddressOf = typename lane_detail::Wide<F>::Address;
 
 template <class F>
 inline constexpr size_t kWidthOf = 1;
@@ -37,7 +46,7 @@ inline constexpr size_t kWidthOf<F> = F::size();
 
 /// Each lane's number in another type: rounded, widened, or cut off towards zero.
 template <class To, class From>
-To convert(const From& x) {
+constexpr To convert(const From& x) {
   if constexpr (IsLanes<From>)
     return std::experimental::static_simd_cast<To>(x);
   else
@@ -140,18 +149,6 @@ struct RgbArray {
   [[nodiscard]] BasicRgb<F> load() const { return {r.load(), g.load(), b.load()}; }
   void store(const BasicRgb<F>& c) { r.store(c.r), g.store(c.g), b.store(c.b); }
 };
-
-/// table[index] in each lane.
-template <class F>
-F gather(const float* table, const IntOf<F>& index) {
-  if constexpr (!IsLanes<F>) {
-    return table[index];
-  } else {
-    LaneArray<IntOf<F>> i;
-    i.store(index);
-    return F([&](auto k) { return table[i[k]]; });
-  }
-}
 
 /// The next larger float; of the largest, infinity. Finite numbers and -infinity only.
 template <class F>

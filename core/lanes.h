@@ -31,6 +31,17 @@ class Lanes {
     size_ = size;
   }
 
+  void push(const T& value) {
+    resize(size_ + 1);
+    data_[size_ - 1] = value;
+  }
+
+  void append(const Lanes& other) {
+    const size_t at = size_;
+    resize(at + other.size_);
+    if (other.size_) std::memcpy(&data_[at], other.data(), other.size_ * sizeof(T));
+  }
+
  private:
   struct Free {
     void operator()(T* p) const { std::free(p); }

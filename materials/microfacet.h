@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "core/lane_vec.h"
+#include "core/lane_memory.h"
 
 namespace alhazen {
 

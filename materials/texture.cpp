@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "core/lane_memory.h"
+
 namespace alhazen {
 namespace {
 
@@ -104,49 +106,97 @@ BasicRgba<F> mix(const BasicRgba<F>& a, const BasicRgba<F>& b, const F& t) {
 template <class F>
 using LevelImages = std::array<const TextureImage*, kWidthOf<F>>;
 
+/// Texels of any kind, lane by lane.
 template <int channels, class T, class F>
-BasicRgba<F> filtered(const LevelImages<F>& images, const TexelPair<F>& x, const TexelPair<F>& y, ColorSpace space) {
-  RgbaArray<F> t00, t10, t01, t11;
-  for (size_t k = 0; k < kWidthOf<F>; ++k) {
-    const TextureImage& image = *images[k];
-    const T* samples = std::get_if<std::vector<T>>(&image.samples)->data();
-    const T *above = samples + size_t(y.a[k]) * size_t(image.width) * channels,
-            *below = samples + size_t(y.b[k]) * size_t(image.width) * channels;
-    const size_t left = size_t(x.a[k]) * channels, right = size_t(x.b[k]) * channels;
-    t00.set(k, texel<channels>(above + left, space)), t10.set(k, texel<channels>(above + right, space));
-    t01.set(k, texel<channels>(below + left, space)), t11.set(k, texel<channels>(below + right, space));
+struct TexelsOneByOne {
+  const LevelImages<F>& images;
+  ColorSpace space;
+
+  BasicRgba<F> operator()(const LaneArray<IntOf<F>>& x, const LaneArray<IntOf<F>>& y) const {
+    RgbaArray<F> texels;
+    for (size_t k = 0; k < kWidthOf<F>; ++k) {
+      const T* samples = std::get_if<std::vector<T>>(&images[k]->samples)->data();
+      const size_t texel_number = size_t(y[k]) * size_t(images[k]->width) + size_t(x[k]);
+      texels.set(k, texel<channels>(samples + texel_number * channels, space));
+    }
+    return texels.load();
   }
-  return mix(mix(t00.load(), t10.load(), x.t), mix(t01.load(), t11.load(), x.t), y.t);
+};
+
+/// byte / 255 as the division rounds it: 0x1.01p-8 times a byte has no rounding.
+template <class F>
+F linear_byte(const F& byte) {
+  return byte * F(0x1.01p-8f) + byte * F(0x1.010102p-24f);
 }
 
-template <class T, class F>
-BasicRgba<F> filtered(const LevelImages<F>& images, const TexelPair<F>& x, const TexelPair<F>& y, ColorSpace space) {
-  switch (images[0]->channels) {
-    case 1:
-      return filtered<1, T, F>(images, x, y, space);
-    case 2:
-      return filtered<2, T, F>(images, x, y, space);
-    case 3:
-      return filtered<3, T, F>(images, x, y, space);
-    default:
-      return filtered<4, T, F>(images, x, y, space);
+/// Texels of bytes, in all lanes at once: four bytes are fetched, of which the first are the channels.
+template <int channels, class F>
+struct TexelsOfBytes {
+  using I = IntOf<F>;
+  AddressOf<F> samples;
+  I width, last_word;  // where the image's last four bytes begin
+  ColorSpace space;
+
+  BasicRgba<F> operator()(const LaneArray<I>& x, const LaneArray<I>& y) const {
+    const I offset = (y.load() * width + x.load()) * I(channels), at = smaller(offset, last_word);
+    const I word = load_at<I>(samples + convert<AddressOf<F>>(at)) >> ((offset - at) * I(8));
+    const auto channel = [&](int c, ColorSpace of_channel) {
+      const I byte = (word >> (8 * c)) & I(0xFF);
+      return of_channel == ColorSpace::srgb ? gather<F>(kBytes[size_t(ColorSpace::srgb)].data(), byte)
+                                            : linear_byte<F>(convert<F>(byte));
+    };
+    const F r = channel(0, space), a = channels % 2 ? F(1) : channel(channels - 1, ColorSpace::linear);
+    if constexpr (channels < 3)
+      return {BasicRgb<F>(r), a};
+    else
+      return {{r, channel(1, space), channel(2, space)}, a};
   }
+};
+
+template <class F, class Texels>
+BasicRgba<F> filtered(const Texels& texels, const TexelPair<F>& x, const TexelPair<F>& y) {
+  return mix(mix(texels(x.a, y.a), texels(x.b, y.a), x.t), mix(texels(x.a, y.b), texels(x.b, y.b), x.t), y.t);
+}
+
+template <int channels, class F>
+BasicRgba<F> filtered(const LevelImages<F>& images, ColorSpace space, const IntOf<F>& width, const TexelPair<F>& x,
+                      const TexelPair<F>& y) {
+  const TextureImage& image = *images[0];
+  if (std::holds_alternative<std::vector<uint16_t>>(image.samples))
+    return filtered(TexelsOneByOne<channels, uint16_t, F>{images, space}, x, y);
+  if (std::holds_alternative<std::vector<float>>(image.samples))
+    return filtered(TexelsOneByOne<channels, float, F>{images, space}, x, y);
+  if constexpr (IsLanes<F>) {
+    LaneArray<AddressOf<F>> samples;
+    LaneArray<IntOf<F>> last_word;
+    bool fits = true;
+    for (size_t k = 0; k < kWidthOf<F>; ++k) {
+      const auto& bytes = *std::get_if<std::vector<uint8_t>>(&images[k]->samples);
+      fits = fits && bytes.size() >= 4 && bytes.size() <= size_t(std::numeric_limits<int32_t>::max());
+      samples[k] = reinterpret_cast<uintptr_t>(bytes.data()), last_word[k] = int32_t(bytes.size()) - 4;
+    }
+    if (fits) return filtered(TexelsOfBytes<channels, F>{samples.load(), width, last_word.load(), space}, x, y);
+  }
+  return filtered(TexelsOneByOne<channels, uint8_t, F>{images, space}, x, y);
 }
 
 template <class F>
 BasicRgba<F> at_levels(const LevelImages<F>& images, const Texture& texture, ColorSpace space, const DoubleOf<F>& u,
                        const DoubleOf<F>& v, const MaskOf<F>& nearest) {
-  LaneArray<IntOf<F>> width, height;
-  for (size_t k = 0; k < kWidthOf<F>; ++k) width[k] = images[k]->width, height[k] = images[k]->height;
-  const TexelPair<F> x = neighbours<F>(u, texture.wrap_u, width.load(), nearest);
-  const TexelPair<F> y = neighbours<F>(v, texture.wrap_v, height.load(), nearest);
-  switch (images[0]->samples.index()) {
-    case 0:
-      return filtered<uint8_t, F>(images, x, y, space);
+  LaneArray<IntOf<F>> widths, heights;
+  for (size_t k = 0; k < kWidthOf<F>; ++k) widths[k] = images[k]->width, heights[k] = images[k]->height;
+  const IntOf<F> width = widths.load();
+  const TexelPair<F> x = neighbours<F>(u, texture.wrap_u, width, nearest);
+  const TexelPair<F> y = neighbours<F>(v, texture.wrap_v, heights.load(), nearest);
+  switch (images[0]->channels) {
     case 1:
-      return filtered<uint16_t, F>(images, x, y, space);
+      return filtered<1, F>(images, space, width, x, y);
+    case 2:
+      return filtered<2, F>(images, space, width, x, y);
+    case 3:
+      return filtered<3, F>(images, space, width, x, y);
     default:
-      return filtered<float, F>(images, x, y, space);
+      return filtered<4, F>(images, space, width, x, y);
   }
 }
 
@@ -192,24 +242,24 @@ BasicRgba<F> sample_used(const TextureTable& table, const TextureUse& use, Color
     return large == small ? MaskOf<F>(large) : large ? enlarged : !enlarged;
   };
   // Two neighbouring levels in each lane, and how much of the smaller one.
+  using I = IntOf<F>;
+  const I last(int(image.smaller.size()));
+  const F rounded = texture.mipmaps == Mipmaps::nearest ? rounded_down(F(level + F(0.5f))) : level;
+  const I below = smaller(convert<I>(rounded), last);
+  const F fraction = select(convert_mask<F>(below < last), F(rounded - convert<F>(below)), F(0));
+  LaneArray<I> numbers;
+  numbers.store(below);
   LevelImages<F> large, small;
-  LaneArray<F> levels, fraction;
-  levels.store(level);
-  bool between = false;
   const auto at_level = [&](size_t k) { return k == 0 ? &image : &image.smaller[k - 1]; };
   for (size_t k = 0; k < kWidthOf<F>; ++k) {
-    const size_t last = image.smaller.size();
-    const float rounded = texture.mipmaps == Mipmaps::nearest ? std::round(levels[k]) : levels[k];
-    const size_t below = std::min(size_t(rounded), last);
-    fraction[k] = below < last ? rounded - float(below) : 0;
-    between = between || fraction[k] > 0;
-    large[k] = at_level(below), small[k] = at_level(std::min(below + 1, last));
+    large[k] = at_level(size_t(numbers[k]));
+    small[k] = at_level(std::min(size_t(numbers[k]) + 1, image.smaller.size()));
   }
   const BasicRgba<F> first =
       at_levels<F>(large, texture, space, folded_u, folded_v, nearest(texture.nearest, texture.nearest_small));
-  if (!between) return first;
+  if (!any_of(fraction > F(0))) return first;
   const MaskOf<F> nearest_small(texture.nearest_small);
-  return mix(first, at_levels<F>(small, texture, space, folded_u, folded_v, nearest_small), fraction.load());
+  return mix(first, at_levels<F>(small, texture, space, folded_u, folded_v, nearest_small), fraction);
 }
 
 template BasicRgba<float> sample_used(const TextureTable&, const TextureUse&, ColorSpace,

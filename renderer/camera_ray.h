@@ -57,13 +57,23 @@ struct Cone {
   }
 };
 
-/// The cone of `direction`, mirrored (`eta` 1) or refracted from `d` into where light is 1 / `eta` times as slow, at a
-/// surface with unit normal n towards where d comes from, and of that mean curvature, per metre, positive where it
-/// bulges that way. Coddington's equations give a spread along the plane of incidence and one across; this is between
-/// them, equal to both where d is along n (for curvature in ray cones: Akenine-Moller et al., "Improved Shader and
-/// Texture Level of Detail Using Ray Cones", JCGT 10(1), 2021).
-[[nodiscard]] Cone deflected(const Cone& cone, const Vec3f& d, const Vec3f& n, const Vec3f& direction, float eta,
-                             float curvature);
+/// The spread of the cone of `direction`, mirrored (`eta` 1) or refracted from `d` into where light is 1 / `eta` times
+/// as slow, at a surface with unit normal n towards where d comes from, and of that mean curvature, per metre, positive
+/// where it bulges that way; `width` and `spread` are those of d's cone there. Coddington's equations give a spread
+/// along the plane of incidence and one across; this is between them, equal to both where d is along n (for curvature
+/// in ray cones: Akenine-Moller et al., "Improved Shader and Texture Level of Detail Using Ray Cones", JCGT 10(1),
+/// 2021).
+template <class F>
+[[nodiscard]] F deflected_spread(const F& width, const F& spread, const Vec3<F>& d, const Vec3<F>& n,
+                                 const Vec3<F>& direction, const F& eta, const F& curvature) {
+  constexpr float kWidest = 2;  // as far to the sides as ahead: more says no more
+  // direction = eta d + bend n. Over its width w the cone's d turns by its spread, n by curvature * w: across the plane
+  // of incidence as it stands, along it over the cosines of both directions.
+  const F bend = dot(direction - d * eta, n);
+  const F cosines = larger(F(1e-3f), absolute(F(dot(d, n) * dot(direction, n))));
+  const F turned = eta * spread + bend * curvature * width / square_root(cosines);
+  return select(turned - turned == F(0), clamped(turned, -kWidest, kWidest), spread);
+}
 
 /// Of one of `samples` rays through a pixel.
 [[nodiscard]] Cone camera_cone(const Camera& camera, int height, int samples);

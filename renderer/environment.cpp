@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/fork_join.h"
+#include "core/lane_memory.h"
 #include "core/sampling.h"
 #include "materials/microfacet.h"
 #include "materials/texture.h"
@@ -179,30 +180,31 @@ namespace {
 
 /// Bilinear look-ups of a level of its own in each lane.
 template <class F>
-BasicRgb<F> looked_up(const std::array<const ColorImage*, kWidthOf<F>>& levels, const Vec2<F>& place) {
+BasicRgb<F> looked_up(const std::vector<ColorImage>& levels, const IntOf<F>& level, const Vec2<F>& place) {
   using I = IntOf<F>;
-  LaneArray<F> width, height;
-  for (size_t k = 0; k < kWidthOf<F>; ++k) width[k] = float(levels[k]->width), height[k] = float(levels[k]->height);
-  const F x = place.x * width.load() - F(0.5f), y = place.y * height.load() - F(0.5f);
+  LaneArray<I> numbers, widths, heights;
+  LaneArray<AddressOf<F>> addresses;
+  numbers.store(level);
+  for (size_t k = 0; k < kWidthOf<F>; ++k) {
+    const ColorImage& image = levels[size_t(numbers[k])];
+    widths[k] = image.width, heights[k] = image.height;
+    addresses[k] = reinterpret_cast<uintptr_t>(image.pixels.data());
+  }
+  const I width = widths.load(), height = heights.load(), last_column = width - I(1), last_row = height - I(1);
+  const F x = place.x * convert<F>(width) - F(0.5f), y = place.y * convert<F>(height) - F(0.5f);
   // One texel beyond the edges at most: x and y are at least -0.5.
   const I x0 = convert<I>(F(x + F(1))) - I(1), y0 = convert<I>(F(y + F(1))) - I(1);
   const F s = x - convert<F>(x0), t = y - convert<F>(y0);
-  LaneArray<I> column, row;
-  column.store(x0), row.store(y0);
-  RgbArray<F> t00, t10, t01, t11;
-  for (size_t k = 0; k < kWidthOf<F>; ++k) {
-    const ColorImage& image = *levels[k];
-    const int i = column[k], j = row[k], w = image.width, h = image.height;
-    const int left = i < 0 ? w - 1 : i >= w ? 0 : i, right = i + 1 >= w ? 0 : i + 1;
-    const size_t above = size_t(std::clamp(j, 0, h - 1)), below = size_t(std::clamp(j + 1, 0, h - 1));
-    const auto at = [&](int u, size_t v) {
-      const float* p = image.pixels.data() + (v * size_t(w) + size_t(u)) * 3;
-      return Rgb{p[0], p[1], p[2]};
-    };
-    t00.set(k, at(left, above)), t10.set(k, at(right, above));
-    t01.set(k, at(left, below)), t11.set(k, at(right, below));
-  }
-  return lerp(lerp(t00.load(), t10.load(), s), lerp(t01.load(), t11.load(), s), t);
+  const I left = select(x0 < I(0), last_column, select(x0 > last_column, I(0), x0));
+  const I right = select(x0 >= last_column, I(0), I(larger(x0, I(-1)) + I(1)));
+  const I above = smaller(larger(y0, I(0)), last_row), below = smaller(I(larger(y0, I(-1)) + I(1)), last_row);
+  const AddressOf<F> pixels = addresses.load();
+  const auto at = [&](const I& column, const I& row) {
+    const AddressOf<F> red = pixels + (convert<AddressOf<F>>(I((row * width + column) * I(3))) << 2);
+    const AddressOf<F> green = red + AddressOf<F>(sizeof(float)), blue = green + AddressOf<F>(sizeof(float));
+    return BasicRgb<F>{load_at<F>(red), load_at<F>(green), load_at<F>(blue)};
+  };
+  return lerp(lerp(at(left, above), at(right, above), s), lerp(at(left, below), at(right, below), s), t);
 }
 
 }  // namespace
@@ -210,23 +212,16 @@ BasicRgb<F> looked_up(const std::array<const ColorImage*, kWidthOf<F>>& levels, 
 template <class F>
 BasicRgb<F> environment_radiance(const Environment& environment, const Vec3<F>& direction_world,
                                  std::type_identity_t<F> roughness) noexcept {
+  using I = IntOf<F>;
   const Vec2<F> place = equirectangular_place(rotated(environment.environment_from_world, direction_world));
-  const F level = clamped(roughness, 0, 1) * F(float(environment.levels.size() - 1));
-  LaneArray<F> levels, fraction;
-  levels.store(level);
-  std::array<const ColorImage*, kWidthOf<F>> sharp, blurred;
-  bool between = false;
-  for (size_t k = 0; k < kWidthOf<F>; ++k) {
-    const size_t below = std::min(size_t(levels[k]), environment.levels.size() - 1);
-    fraction[k] = levels[k] - float(below);
-    between = between || fraction[k] > 0;
-    sharp[k] = &environment.levels[below];
-    blurred[k] = fraction[k] > 0 ? &environment.levels[below + 1] : sharp[k];
-  }
-  const F strength(environment.strength);
-  const BasicRgb<F> first = looked_up<F>(sharp, place);
-  if (!between) return first * strength;
-  return lerp(first, looked_up<F>(blurred, place), fraction.load()) * strength;
+  const I last(int(environment.levels.size() - 1));
+  const F level = clamped(roughness, 0, 1) * convert<F>(last);
+  const I sharp = smaller(convert<I>(level), last);
+  const F fraction = level - convert<F>(sharp), strength(environment.strength);
+  const BasicRgb<F> first = looked_up(environment.levels, sharp, place);
+  if (!any_of(fraction > F(0))) return first * strength;
+  const I blurred = smaller(I(sharp + I(1)), last);
+  return lerp(first, looked_up(environment.levels, blurred, place), fraction) * strength;
 }
 
 template Rgb environment_radiance(const Environment&, const Vec3f&, float) noexcept;

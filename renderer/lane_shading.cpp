@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "materials/phong.h"
+#include "renderer/camera_ray.h"
 #include "renderer/light.h"
 #include "renderer/shading_terms.h"
 
@@ -18,6 +19,7 @@ struct Hit {
   Vec3<F> d, b, n;  // ray direction, back along it, shading normal turned towards b
   Mask enters;
   Color weight;
+  F eta;  // the index before the surface to that beyond it
 };
 
 const Color kBlack(F(0));
@@ -58,7 +60,7 @@ void set_shadow_rays(const Scene& scene, const Hit& hit, const Reflected& reflec
   for (size_t k = 0; k < scene.lights.size(); ++k) set_shadow_ray(hit, scene.lights[k], reflected, out.shadow[k]);
 }
 
-void shade_phong(const Scene& scene, const BasicPhongBsdf<F>& bsdf, const Hit& hit, LaneLight& out) {
+void shade_phong(const Scene& scene, const BasicPhongBsdf<F>& bsdf, Hit& hit, LaneLight& out) {
   out.ambient.store(hit.weight * bsdf.ambient * ambient_light(scene, hit.n));
   set_shadow_rays(
       scene, hit, [&](const Vec3<F>& to_light) { return reflected_light(bsdf, hit.n, to_light, hit.b); }, out);
@@ -66,7 +68,7 @@ void shade_phong(const Scene& scene, const BasicPhongBsdf<F>& bsdf, const Hit& h
   const bool transmits = max_component(bsdf.transmission) > 0;
   if (!transmits && !(max_component(bsdf.reflection) > 0)) return;
   const F eta = select(hit.enters, F(1 / bsdf.ior), F(bsdf.ior));
-  out.eta.store(eta);
+  hit.eta = eta;
   Vec3<F> refracted;
   const Mask passes = transmits ? refract(hit.d, hit.n, eta, refracted) : Mask(false);
   const F f = bsdf.fresnel ? fresnel_dielectric(smaller(F(1), dot(hit.n, hit.b)), eta) : F(0);
@@ -115,29 +117,50 @@ void shade_metallic_roughness(const Scene& scene, const BaseLayer<F>& base, cons
           out.mirror);
 }
 
+/// Cones serve textures alone, so that a scene without any does not pay for the curvature.
+void set_cones(const Scene& scene, const ShadingGroup& group, const LaneWork& work, const Hit& hit, LaneLight& out) {
+  const F width = work.cone_width.load(), spread = work.cone_spread.load();
+  out.mirror.cone_spread = out.refracted.cone_spread = work.cone_spread;
+  if (scene.images.empty()) return;
+  const F outward = mean_curvature(scene, work.hits, group.attributes, hit.surface, width);
+  const F curvature = select(dot(hit.surface.ns_world, hit.d) < F(0), outward, -outward);
+  const auto set = [&](LaneRays& rays, const F& eta) {
+    if (rays.lanes == 0) return;
+    rays.cone_spread.store(deflected_spread(width, spread, hit.d, hit.n, rays.direction.load(), eta, curvature));
+  };
+  set(out.mirror, F(1)), set(out.refracted, hit.eta);
+}
+
 }  // namespace
 
-void shade_lanes(const Scene& scene, const ShadingGroup& group, const LaneWork& work, LaneLight& out) {
+void shade_lanes(const Scene& scene, const ShadingGroup& group, const LaneWork& work, PhaseClock& clock,
+                 LaneLight& out) {
   const Material& material = scene.materials[group.material];
   const TextureTable table = texture_table(scene);
   Hit hit;
+  clock.enter_part(Phase::surface_points);
   hit.surface = surface_points(scene, work.hits, group.attributes, group.has_textures);
   hit.d = work.hits.direction.load(), hit.b = -hit.d;
   hit.surface.footprint = footprint(work.cone_width.load(), hit.surface.ng_world, hit.d);
+  hit.weight = work.weight.load();
+  clock.enter_part(group.has_textures ? Phase::textures : Phase::shading);
   hit.n = shading_normal(hit.surface, material.normal_texture, material.normal_scale, table);
   hit.enters = dot(hit.n, hit.d) < F(0);
   hit.n = select(hit.enters, hit.n, -hit.n);
-  hit.weight = work.weight.load();
   const BasicSurfaceInputs<F> inputs = hit.surface.inputs();
-  out.emission.store(hit.weight * emission(material, table, inputs));
+  out.emits = max_component(material.emissive) > 0;
+  if (out.emits) out.emission.store(hit.weight * emission(material, table, inputs));
   out.mirror.lanes = out.refracted.lanes = 0;
-  if (material.model == ShadingModel::phong)
-    shade_phong(scene, phong_bsdf(material, table, inputs), hit, out);
-  else
-    shade_metallic_roughness(scene, base_layer(material, table, inputs, material.ior), hit, out);
-  if ((out.mirror.lanes | out.refracted.lanes) == 0) return;
-  out.p_world.store(hit.surface.p_world), out.ng_world.store(hit.surface.ng_world);
-  out.ns_world.store(hit.surface.ns_world), out.n.store(hit.n);
+  if (material.model == ShadingModel::phong) {
+    const auto bsdf = phong_bsdf(material, table, inputs);
+    clock.enter_part(Phase::shading);
+    shade_phong(scene, bsdf, hit, out);
+  } else {
+    const BaseLayer<F> base = base_layer(material, table, inputs, material.ior);
+    clock.enter_part(Phase::shading);
+    shade_metallic_roughness(scene, base, hit, out);
+  }
+  if ((out.mirror.lanes | out.refracted.lanes) != 0) set_cones(scene, group, work, hit, out);
 }
 
 }  // namespace alhazen

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "renderer/phase_clock.h"
 #include "renderer/shading_groups.h"
 
 namespace alhazen {
@@ -12,29 +13,30 @@ namespace alhazen {
 struct LaneRays {
   uint32_t lanes = 0;
   Vec3Array<ShadingLanes> origin, direction;
-  LaneArray<ShadingLanes> t_max;  // of shadow rays
-  RgbArray<ShadingLanes> weight;  // what they bring
+  LaneArray<ShadingLanes> t_max;        // of shadow rays
+  LaneArray<ShadingLanes> cone_spread;  // of the others
+  RgbArray<ShadingLanes> weight;        // what they bring
 };
 
 /// What goes in: hits, and what is left of their rays.
 struct LaneWork {
   LaneHits hits;
-  RgbArray<ShadingLanes> weight;       // of the rays, where they arrive
-  LaneArray<ShadingLanes> cone_width;  // of the rays, at the hits
+  RgbArray<ShadingLanes> weight;                         // of the rays, where they arrive
+  LaneArray<ShadingLanes> cone_width, cone_spread;       // of the rays, at the hits
+  std::array<uint32_t, kWidthOf<ShadingLanes>> pixel{};  // of the rays
 };
 
 /// What comes out.
 struct LaneLight {
-  RgbArray<ShadingLanes> emission, ambient;  // weighed
+  bool emits = false;
+  RgbArray<ShadingLanes> emission, ambient;  // weighed; emission only where the material emits
   std::vector<LaneRays> shadow;              // by light
   LaneRays mirror, refracted;
-  // Where they leave from: what widens their cones. `n`: the normal that shades, towards where the ray came from.
-  Vec3Array<DoubleOf<ShadingLanes>> p_world;
-  Vec3Array<ShadingLanes> ng_world, ns_world, n;
-  LaneArray<ShadingLanes> eta;
   LaneArray<ShadingLanes> roughness;  // of the surface
 };
 
-void shade_lanes(const Scene& scene, const ShadingGroup& group, const LaneWork& work, LaneLight& out);
+/// The clock is in Phase::shading before and after.
+void shade_lanes(const Scene& scene, const ShadingGroup& group, const LaneWork& work, PhaseClock& clock,
+                 LaneLight& out);
 
 }  // namespace alhazen

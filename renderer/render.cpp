@@ -35,44 +35,67 @@ Rgb light_passing(const void* data, const Crossing& crossing) noexcept {
   return straight_transmittance(scene.materials[s.material], texture_table(scene), s.inputs());
 }
 
-uint32_t seed_of(int x, int y) { return mix_bits(uint32_t(x) + mix_bits(uint32_t(y))); }
+template <class U>
+U seed_of(const U& x, const U& y) {
+  return mix_bits<U>(x + mix_bits<U>(y));
+}
 
-/// The camera rays of one sample of every pixel; those of a moving scene at times of their own.
+/// Where a sample of a pixel lies on the film, in pixels from the top left: of one pixel, or of several lanes'.
+template <class F>
+Vec2<DoubleOf<F>> film_point(const IntOf<F>& x, const IntOf<F>& y, uint32_t sample, int samples) {
+  using D = DoubleOf<F>;
+  using U = UintOf<F>;
+  const Vec2<D> middle{convert<D>(x) + D(0.5), convert<D>(y) + D(0.5)};
+  if (samples == 1) return middle;
+  const Vec2<U> bits = sobol_owen_bits(U(sample), seed_of(convert<U>(x), convert<U>(y)));
+  const auto offset = [](const U& of) { return convert<D>(sample_tent<F>(unit_from_bits<F>(of))); };
+  return {middle.x + offset(bits.x), middle.y + offset(bits.y)};
+}
+
+/// Into the elements from `first` on, of rows whose padding may be written to.
+void store(const Vec3<ShadingLanes>& v, Vec3Lanes& rows, size_t first) {
+  constexpr auto kAligned = std::experimental::element_aligned;
+  v.x.copy_to(&rows.x[first], kAligned), v.y.copy_to(&rows.y[first], kAligned), v.z.copy_to(&rows.z[first], kAligned);
+}
+
+/// The camera rays of one sample of every pixel.
 void push_camera_rays(const Camera& camera, const RenderOptions& options, const Cell& cell, uint32_t sample,
-                      bool moving, WaveArena& arena) {
+                      WaveArena& arena) {
+  using F = ShadingLanes;
+  constexpr size_t kLanes = kWidthOf<F>;
   PathWave& wave = arena.pending;
-  arena.time_of_pixel.resize(moving ? size_t(kCellSize) * kCellSize : 0);
   wave.resize(size_t(cell.x1 - cell.x0) * size_t(cell.y1 - cell.y0));
-  using D = DoubleOf<ShadingLanes>;
-  constexpr size_t kLanes = kWidthOf<ShadingLanes>;
-  LaneArray<D> lane_x{}, lane_y{};
-  Vec3Array<ShadingLanes> origin, direction;
-  size_t i = 0;
   const Film film(camera, options.width, options.height);
-  const bool camera_moves = moving && !camera.track.empty();
   const Cone cone = camera_cone(camera, options.height, options.samples);
+  LaneArray<IntOf<F>> xs{}, ys{};
+  size_t i = 0;
   for_each_pixel(cell, [&](int x, int y) {
-    double fx = x + 0.5, fy = y + 0.5;
-    if (options.samples > 1) {
-      const Vec2f u = sobol_owen(sample, seed_of(x, y));
-      fx += double(sample_tent(u.x)), fy += double(sample_tent(u.y));
-    }
-    const uint32_t pixel = uint32_t((y - cell.y0) * kCellSize + (x - cell.x0));
-    if (moving) arena.time_of_pixel[pixel] = third_sobol_owen(sample, seed_of(x, y));
-    const auto film_then = [&] {
-      return Film(at_time(camera.track, arena.time_of_pixel[pixel]), options.width, options.height);
-    };
-    wave.paths[i] = {.pixel = pixel, .cone = cone};
-    if (camera_moves) {
-      wave.rays.set(i, camera_ray(film_then(), fx, fy));
-    } else {
-      lane_x[i % kLanes] = fx, lane_y[i % kLanes] = fy;
-      if ((i + 1) % kLanes == 0 || i + 1 == wave.size()) {
-        const FilmRay<ShadingLanes> rays = film_ray<ShadingLanes>(film, lane_x.load(), lane_y.load());
-        origin.store(rays.origin), direction.store(rays.direction);
-        for (size_t k = 0, first = i / kLanes * kLanes; first + k <= i; ++k)
-          wave.rays.set(first + k, {origin.get(k), direction.get(k)});
-      }
+    xs[i % kLanes] = x, ys[i % kLanes] = y;
+    wave.paths[i] = {.pixel = uint32_t((y - cell.y0) * kCellSize + (x - cell.x0)), .cone = cone};
+    ++i;
+    if (i % kLanes != 0 && i != wave.size()) return;
+    const Vec2<DoubleOf<F>> p = film_point<F>(xs.load(), ys.load(), sample, options.samples);
+    const FilmRay<F> rays = film_ray<F>(film, p.x, p.y);
+    const size_t first = (i - 1) / kLanes * kLanes;
+    store(rays.origin, wave.rays.origin, first), store(rays.direction, wave.rays.direction, first);
+  });
+  std::fill_n(wave.rays.t_min.data(), wave.size(), Rayf{}.t_min);
+  std::fill_n(wave.rays.t_max.data(), wave.size(), Rayf{}.t_max);
+}
+
+/// The same while the shutter is open: each at a time of its own, of a camera that may move.
+void push_moving_camera_rays(const Camera& camera, const RenderOptions& options, const Cell& cell, uint32_t sample,
+                             WaveArena& arena) {
+  push_camera_rays(camera, options, cell, sample, arena);
+  arena.time_of_pixel.resize(size_t(kCellSize) * kCellSize);
+  size_t i = 0;
+  for_each_pixel(cell, [&](int x, int y) {
+    float& time = arena.time_of_pixel[arena.pending.paths[i].pixel];
+    time = third_sobol_owen(sample, seed_of(uint32_t(x), uint32_t(y)));
+    if (!camera.track.empty()) {
+      const Vec2d p = film_point<float>(x, y, sample, options.samples);
+      const Film film_then(at_time(camera.track, time), options.width, options.height);
+      arena.pending.rays.set(i, camera_ray(film_then, p.x, p.y));
     }
     ++i;
   });
@@ -95,6 +118,7 @@ struct CellWorker {
     const uint64_t doubts_before = doubt_counts().quad;
     CellWaves log;
     arena.log = control.log ? &log : nullptr;
+    arena.clock.splits_shading = control.splits_shading;
     bool finished = true;
     if (options.integrator == Integrator::whitted)
       finished = options.layers.empty() ? whitted(cell, arena) : whitted_with_layers(cell, arena);
@@ -109,7 +133,7 @@ struct CellWorker {
 
   void signature(const Cell& cell, WaveArena& arena) const {
     arena.clock.enter(Phase::generation);
-    push_camera_rays(camera, options, cell, 0, false, arena);
+    push_camera_rays(camera, options, cell, 0, arena);
     if (arena.log) arena.log->push_back(logged(WaveKind::camera, arena.pending.rays));
     arena.clock.enter(Phase::traversal);
     accelerated.intersect(arena.pending.rays, Coherence::coherent, arena.hits);
@@ -143,7 +167,7 @@ struct CellWorker {
       if (control.stop) return false;
       arena.clock.enter(Phase::generation);
       radiance.fill(Rgb(0.0f)), background.fill(0.0f);
-      push_camera_rays(camera, options, cell, uint32_t(sample), moving, arena);
+      (moving ? push_moving_camera_rays : push_camera_rays)(camera, options, cell, uint32_t(sample), arena);
       if (arena.observer) arena.observer->begin_sample(sample, arena.pending, arena.time_of_pixel);
       trace_whitted(scene, accelerated, groups, options, arena, radiance.data(), background.data());
       arena.clock.enter(Phase::film);

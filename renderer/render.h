@@ -37,6 +37,7 @@ struct RenderControl {
   std::atomic<uint64_t> dropped_samples{0};               // not finite
   std::atomic<uint64_t> doubts{0};                        // crossings that doubles alone did not settle
   std::array<std::atomic<uint64_t>, kPhases> phase_ns{};  // by Phase, of all threads
+  bool splits_shading = false;                            // PhaseClock's
   std::atomic<int64_t> first_tile_ns{0};  // when the first tile was finished, by the steady clock; 0: none is yet
   WaveLog* log = nullptr;                 // gets the waves of every cell, if there is one; they take much memory
 };

@@ -49,7 +49,7 @@ ShadingGroups::ShadingGroups(const Scene& scene) {
   for (const Mesh& mesh : scene.geometry.meshes) {
     first_part_.push_back(uint32_t(group_of_part_.size()));
     for (const TriangleMesh& part : mesh.parts)
-      group_of_part_.push_back(part.polygon_normals.empty() ? group_of(part.material, attributes(part), false) : 0);
+      group_of_part_.push_back(group_of(part.material, attributes(part), false));
   }
   for (const ShapeInstance& shape : scene.geometry.shape_instances)
     group_of_shape_.push_back(group_of(shape.material, {}, true));

@@ -7,6 +7,7 @@
 
 #include "accel/line_map.h"
 #include "accel/posed.h"
+#include "core/lane_memory.h"
 #include "materials/microfacet.h"
 
 namespace alhazen {
@@ -18,7 +19,8 @@ constexpr double kUlp = 0x1p-24;  // half the spacing of floats, relative
 template <class F>
 struct Corners {
   std::array<Vec3<F>, 3> p_object, n_object, t_object;
-  F handedness;  // of the first tangent
+  Vec3<F> n_polygon;  // in object space
+  F handedness;       // of the first tangent
   std::array<std::array<Vec2<F>, kMaxUvSets>, 3> uvs;
   std::array<BasicRgba<F>, 3> colors;
 };
@@ -46,6 +48,13 @@ D plane_error(const Vec3<D>& a, const Vec3<D>& b, const Vec3<D>& c, const D& twi
   return longest * smaller(D(D(8 * kUlp) * shortest * middle), twice_area);
 }
 
+/// `v` over its length, but for one more rounding; 0 stays 0. For one division instead of three.
+template <class D>
+Vec3<D> unit(const Vec3<D>& v) {
+  const D squared = dot(v, v);
+  return select(squared > D(0), v * D(D(1) / square_root(squared)), v);
+}
+
 /// Position, normals and their errors. `m`: to the world, or null for a part that lies there; `roundings`: of the
 /// position, in units of kUlp.
 template <class F>
@@ -59,7 +68,7 @@ void place(const Corners<F>& corners, const Attributes& has, const F& u, const F
   const Vec3<D> across = cross(p[1] - p[0], p[2] - p[0]);
   const D twice_area = length(across);
   const D stretch = m ? determinant(*m) : D(1);
-  const Vec3<D> ng = normalize(across);
+  const Vec3<D> ng = unit(across);
   s.ng_world = s.ns_world = convert<F>(select(stretch < D(0), -ng, ng));
 
   const auto size_of = [](const Vec3<D>& x) { return larger(absolute(x.x), larger(absolute(x.y), absolute(x.z))); };
@@ -73,16 +82,16 @@ void place(const Corners<F>& corners, const Attributes& has, const F& u, const F
   }
   s.offset = convert<F>(D(D(kUlp) * roundings * size + error / twice_area));
 
-  if (has.normals) {
-    const Vec3<D> n = convert<D>(interpolated(corners.n_object, u, v));
-    const Vec3<D> n_world = normalize(m ? outer_normal(*m, stretch, n) : n);
+  if (has.normals || has.polygon_normals) {
+    const Vec3<D> n = convert<D>(has.normals ? interpolated(corners.n_object, u, v) : corners.n_polygon);
+    const Vec3<D> n_world = unit(m ? outer_normal(*m, stretch, n) : n);
     const D squared = dot(n_world, n_world);
     const auto usable = squared > D(0) && squared - squared == D(0);
     s.ns_world = select(convert_mask<F>(usable), convert<F>(n_world), s.ns_world);
   }
   if (has.tangents) {
     const Vec3<D> t = convert<D>(interpolated(corners.t_object, u, v));
-    s.tangent_world = convert<F>(normalize(m ? transform_vector(*m, t) : t));
+    s.tangent_world = convert<F>(unit(m ? transform_vector(*m, t) : t));
     s.bitangent_sign = select(convert_mask<F>(stretch < D(0)), F(-corners.handedness), corners.handedness);
   }
 }
@@ -120,6 +129,7 @@ void measure_uvs(const Corners<F>& corners, const Attributes& has, const Affine3
 Corners<float> corners_of(const PosedPart& posed, const TriangleMesh& part, const Attributes& has, uint32_t triangle) {
   const std::array<uint32_t, 3>& corner = part.triangles[triangle];
   Corners<float> c;
+  if (has.polygon_normals) c.n_polygon = posed.polygon_normal(polygon_of(part, triangle));
   for (size_t k = 0; k < 3; ++k) {
     c.p_object[k] = posed.position(corner[k]);
     if (has.normals) c.n_object[k] = posed.normal(corner[k]);
@@ -153,11 +163,6 @@ SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v,
   // Rounding of the position, of an instance's ray transform, and of the traversal's plane; of both poses in motion.
   const bool moves = track_of_object(geometry, ids.object) || track_of_mesh(geometry, instance.mesh);
   place(corners, has, u, v, map, moves ? 64.0 : map ? 16.0 : 4.0, s);
-  if (part.normals.empty() && !part.polygon_normals.empty()) {
-    const Vec3f n = posed.polygon_normal(polygon_of(part, ids.primitive));
-    const Vec3d n_world = normalize(transform_normal(m, Vec3d(n)));
-    if (dot(n_world, n_world) > 0) s.ns_world = Vec3f(n_world);
-  }
   return s;
 }
 
@@ -184,24 +189,24 @@ SurfacePoint shape_point(const Scene& scene, uint32_t object, int face, const Af
   return s;
 }
 
-/// Half the divergence of the normals, which are linear between the corners.
-double mesh_curvature(const Scene& scene, const HitIds& ids, float time) {
-  const Geometry& geometry = scene.geometry;
-  const uint32_t mesh = geometry.mesh_instances[ids.object].mesh;
-  const TriangleMesh& part = geometry.meshes[mesh].parts[ids.part];
-  if (part.normals.empty()) return 0;
-  const PosedPart posed(part, ids.part, track_of_mesh(geometry, mesh), time);
-  const Affine3d m = world_from_object(geometry, ids.object, time);
-  const auto& corner = part.triangles[ids.primitive];
-  std::array<Vec3d, 3> p, n;
-  for (size_t k = 0; k < 3; ++k) {
-    p[k] = transform_point(m, Vec3d(posed.position(corner[k])));
-    n[k] = normalize(transform_normal(m, Vec3d(posed.normal(corner[k]))));
-  }
-  const Vec3d e1 = p[1] - p[0], e2 = p[2] - p[0], across = cross(e1, e2);
+/// Half the divergence of the normals, which are linear between the corners. Not a number where the triangle is none.
+template <class F>
+F mesh_curvature(const Corners<F>& corners, const Affine3<DoubleOf<F>>* m) {
+  using D = DoubleOf<F>;
+  const auto& p = corners.p_object;
+  const D stretch = m ? determinant(*m) : D(1);
+  const auto edge = [&](size_t k) {
+    const Vec3<D> e = convert<D>(p[k]) - convert<D>(p[0]);
+    return convert<F>(m ? transform_vector(*m, e) : e);
+  };
+  const auto normal = [&](size_t k) {
+    const Vec3<F>& n = corners.n_object[k];
+    return normalize(m ? convert<F>(outer_normal(*m, stretch, convert<D>(n))) : n);
+  };
+  const Vec3<F> e1 = edge(1), e2 = edge(2), across = cross(e1, e2), n0 = normal(0);
   // Per unit of each edge, times the vector that is 1 along it and 0 along the other.
-  const double divergence = dot(n[1] - n[0], cross(e2, across)) + dot(n[2] - n[0], cross(across, e1));
-  return divergence / (2 * dot(across, across));
+  const F divergence = dot(normal(1) - n0, cross(e2, across)) + dot(normal(2) - n0, cross(across, e1));
+  return divergence / (F(2) * dot(across, across));
 }
 
 /// A shape's surface about a point of it.
@@ -214,6 +219,7 @@ class ShapeSurroundings {
         shape_(scene.geometry.shapes[shape_instance(scene.geometry, ids.object).shape]),
         face_(int(ids.part)),
         p_world_(point.p_world),
+        ng_world_(point.ng_world),
         step_(std::max(width, 1e-6 * max_component(abs(point.p_world)))) {  // well above the rounding of double
     const ShadingFrame frame = frame_about(point.ng_world);
     sides_ = {Vec3d(frame.t), Vec3d(frame.b)};
@@ -221,7 +227,8 @@ class ShapeSurroundings {
 
   /// From how far the normal leans outward at the steps, put back on the surface.
   [[nodiscard]] double mean_curvature() const {
-    const Vec3d n = normal_near(p_world_);
+    if (is_flat()) return 0;
+    const Vec3d n(ng_world_);
     double turns = 0;
     for (const Vec3d& side : sides_) turns += dot(normal_near(p_world_ + side * step_) - n, side) / step_;
     return turns / 2;
@@ -240,6 +247,14 @@ class ShapeSurroundings {
   }
 
  private:
+  [[nodiscard]] bool is_flat() const {
+    return std::visit(
+        []<class S>(const S&) {
+          return std::is_same_v<S, Box> || std::is_same_v<S, Disk> || std::is_same_v<S, Polygon>;
+        },
+        shape_);
+  }
+
   /// f(shape, point of its surface near p_world, face).
   template <class F>
   [[nodiscard]] auto near(const Vec3d& p_world, const F& f) const {
@@ -260,6 +275,7 @@ class ShapeSurroundings {
   const Shape& shape_;
   int face_;
   Vec3d p_world_;
+  Vec3f ng_world_;
   double step_;
   std::array<Vec3d, 2> sides_;
 };
@@ -299,83 +315,152 @@ namespace {
 using F = ShadingLanes;
 using D = DoubleOf<F>;
 
-/// Corners of a triangle in each lane, on their way from memory.
-struct CornerArrays {
-  std::array<Vec3Array<F>, 3> p, n, t;
-  LaneArray<F> handedness;
-  std::array<std::array<std::array<LaneArray<F>, 2>, kMaxUvSets>, 3> uvs;
-  std::array<RgbArray<F>, 3> colors;
-  std::array<LaneArray<F>, 3> alphas;
-
-  void set(size_t lane, const TriangleMesh& part, const Attributes& has, uint32_t triangle) {
-    const std::array<uint32_t, 3>& corner = part.triangles[triangle];
-    for (size_t k = 0; k < 3; ++k) {
-      p[k].set(lane, part.positions[corner[k]]);
-      if (has.normals) n[k].set(lane, part.normals[corner[k]]);
-      if (has.tangents) {
-        const Vec4f& tangent = part.tangents[corner[k]];
-        t[k].set(lane, {tangent.x, tangent.y, tangent.z});
-        if (k == 0) handedness[lane] = tangent.w;
-      }
-      for (size_t i = 0; i < has.uv_sets; ++i) {
-        const Vec2f& uv = part.uvs[i][corner[k]];
-        uvs[k][i][0][lane] = uv.x, uvs[k][i][1][lane] = uv.y;
-      }
-      if (has.colors) {
-        const Vec4f& color = part.colors[corner[k]];
-        colors[k].set(lane, {color.x, color.y, color.z}), alphas[k][lane] = color.w;
-      }
-    }
+/// Where each lane's part has its arrays; of those that it lacks nothing is asked.
+class LaneParts {
+ public:
+  LaneParts(const Scene& scene, const LaneHits& hits) {
+    const Geometry& geometry = scene.geometry;
+    const auto part = [&](size_t k) {
+      return &geometry.meshes[geometry.mesh_instances[hits.ids[k].object].mesh].parts[hits.ids[k].part];
+    };
+    one_part_ = true;
+    for (size_t k = 0; k < kWidthOf<F>; ++k) parts_[k] = part(k), one_part_ = one_part_ && parts_[k] == parts_[0];
   }
 
-  [[nodiscard]] Corners<F> load(const Attributes& has) const {
-    Corners<F> c;
-    for (size_t k = 0; k < 3; ++k) {
-      c.p_object[k] = p[k].load();
-      if (has.normals) c.n_object[k] = n[k].load();
-      if (has.tangents) c.t_object[k] = t[k].load();
-      for (size_t i = 0; i < has.uv_sets; ++i) c.uvs[k][i] = {uvs[k][i][0].load(), uvs[k][i][1].load()};
-      if (has.colors) c.colors[k] = {colors[k].load(), alphas[k].load()};
+  /// The address of element `index` of the array `of(part)` in each lane.
+  template <class Of>
+  [[nodiscard]] AddressOf<F> element(const Of& of, const IntOf<F>& index) const {
+    using T = typename std::remove_cvref_t<decltype(of(*parts_[0]))>::value_type;
+    const auto base = [&](const TriangleMesh* part) { return uint64_t(reinterpret_cast<uintptr_t>(of(*part).data())); };
+    AddressOf<F> first(base(parts_[0]));
+    if (!one_part_) {
+      LaneArray<AddressOf<F>> bases;
+      for (size_t k = 0; k < kWidthOf<F>; ++k) bases[k] = base(parts_[k]);
+      first = bases.load();
     }
-    if (has.tangents) c.handedness = handedness.load();
-    return c;
+    const AddressOf<F> number = convert<AddressOf<F>>(index) & AddressOf<F>(0xFFFFFFFFu);  // they are unsigned
+    return first + number * AddressOf<F>(sizeof(T));
   }
+
+  [[nodiscard]] Vec3<F> polygon_normals(const LaneArray<IntOf<F>>& triangles) const {
+    Vec3Array<F> n;
+    for (size_t k = 0; k < kWidthOf<F>; ++k)
+      n.set(k, parts_[k]->polygon_normals[polygon_of(*parts_[k], uint32_t(triangles[k]))]);
+    return n.load();
+  }
+
+ private:
+  std::array<const TriangleMesh*, kWidthOf<F>> parts_;
+  bool one_part_;
 };
 
-struct AffineArrays {
-  std::array<Vec3Array<D>, 4> columns;
+template <class N>
+N component(const AddressOf<F>& element, size_t k) {
+  return load_at<N>(element + AddressOf<F>(4 * k));
+}
+Vec3<F> load_vec3(const AddressOf<F>& element) {
+  return {component<F>(element, 0), component<F>(element, 1), component<F>(element, 2)};
+}
 
-  void set(size_t lane, const Affine3d& m) {
-    columns[0].set(lane, m.x), columns[1].set(lane, m.y), columns[2].set(lane, m.z), columns[3].set(lane, m.origin);
+Corners<F> lane_corners(const LaneParts& parts, const Attributes& has, const LaneArray<IntOf<F>>& triangles) {
+  const AddressOf<F> corner_numbers = parts.element(
+      [](const TriangleMesh& part) -> const auto& { return part.triangles; }, triangles.load());
+  Corners<F> c;
+  if (has.polygon_normals) c.n_polygon = parts.polygon_normals(triangles);
+  for (size_t k = 0; k < 3; ++k) {
+    const auto corner = component<IntOf<F>>(corner_numbers, k);
+    const auto of = [&](auto member) {
+      return parts.element(
+          [&](const TriangleMesh& part) -> const auto& { return part.*member; }, corner);
+    };
+    c.p_object[k] = load_vec3(of(&TriangleMesh::positions));
+    if (has.normals) c.n_object[k] = load_vec3(of(&TriangleMesh::normals));
+    if (has.tangents) {
+      const AddressOf<F> tangent = of(&TriangleMesh::tangents);
+      c.t_object[k] = load_vec3(tangent);
+      if (k == 0) c.handedness = component<F>(tangent, 3);
+    }
+    for (size_t i = 0; i < has.uv_sets; ++i) {
+      const AddressOf<F> uv = parts.element(
+          [&](const TriangleMesh& part) -> const auto& { return part.uvs[i]; }, corner);
+      c.uvs[k][i] = {component<F>(uv, 0), component<F>(uv, 1)};
+    }
+    if (has.colors) {
+      const AddressOf<F> color = of(&TriangleMesh::colors);
+      const Vec3<F> rgb = load_vec3(color);
+      c.colors[k] = {{rgb.x, rgb.y, rgb.z}, component<F>(color, 3)};
+    }
   }
-  [[nodiscard]] Affine3<D> load() const {
-    return {columns[0].load(), columns[1].load(), columns[2].load(), columns[3].load()};
-  }
+  return c;
+}
+
+Affine3<D> lane_maps(const Geometry& geometry, const LaneHits& hits) {
+  const auto map = [&](size_t k) -> const Affine3d& {
+    return geometry.mesh_instances[hits.ids[k].object].world_from_object;
+  };
+  const auto column = [&](Vec3d Affine3d::*of) {
+    Vec3Array<D> all;
+    for (size_t k = 0; k < kWidthOf<F>; ++k) all.set(k, map(k).*of);
+    return all.load();
+  };
+  return {column(&Affine3d::x), column(&Affine3d::y), column(&Affine3d::z), column(&Affine3d::origin)};
+}
+
+Affine3<D> broadcast(const Affine3d& m) {
+  const auto all = [](const Vec3d& v) { return Vec3<D>(D(v.x), D(v.y), D(v.z)); };
+  return {all(m.x), all(m.y), all(m.z), all(m.origin)};
+}
+
+/// The triangles of hits on meshes.
+struct LaneTriangles {
+  Corners<F> corners;
+  Affine3<D> world_from_object;
+  D roundings;  // of a position, in units of kUlp
+  bool all_in_world;
+
+  [[nodiscard]] const Affine3<D>* map() const { return all_in_world ? nullptr : &world_from_object; }
 };
+
+LaneTriangles lane_triangles(const Scene& scene, const LaneHits& hits, const Attributes& has) {
+  constexpr double kInWorld = 4, kPlaced = 16;
+  const Geometry& geometry = scene.geometry;
+  LaneTriangles all;
+  LaneArray<IntOf<F>> triangles;
+  bool one_object = true;
+  for (size_t k = 0; k < kWidthOf<F>; ++k) {
+    triangles[k] = int32_t(hits.ids[k].primitive);
+    one_object = one_object && hits.ids[k].object == hits.ids[0].object;
+  }
+  all.corners = lane_corners(LaneParts(scene, hits), has, triangles);
+  const auto is_in_world = [&](const HitIds& ids) {
+    return geometry.mesh_instances[ids.object].world_from_object == Affine3d{};
+  };
+  if (one_object) {
+    all.all_in_world = is_in_world(hits.ids[0]);
+    all.roundings = D(all.all_in_world ? kInWorld : kPlaced);
+    if (!all.all_in_world)
+      all.world_from_object = broadcast(geometry.mesh_instances[hits.ids[0].object].world_from_object);
+    return all;
+  }
+  LaneArray<D> roundings;
+  all.all_in_world = true;
+  for (size_t k = 0; k < kWidthOf<F>; ++k) {
+    const bool in_world = is_in_world(hits.ids[k]);
+    roundings[k] = in_world ? kInWorld : kPlaced;
+    all.all_in_world = all.all_in_world && in_world;
+  }
+  all.roundings = roundings.load();
+  if (!all.all_in_world) all.world_from_object = lane_maps(geometry, hits);
+  return all;
+}
 
 void set_mesh_points(const Scene& scene, const LaneHits& hits, const Attributes& has, bool measure,
                      BasicSurfacePoint<F>& s) {
-  const Geometry& geometry = scene.geometry;
-  CornerArrays arrays;
-  AffineArrays maps;
-  LaneArray<D> roundings;
-  bool all_in_world = true;
-  for (size_t k = 0; k < kWidthOf<F>; ++k) {
-    const HitIds& ids = hits.ids[k];
-    const MeshInstance& instance = geometry.mesh_instances[ids.object];
-    arrays.set(k, geometry.meshes[instance.mesh].parts[ids.part], has, ids.primitive);
-    maps.set(k, instance.world_from_object);
-    const bool in_world = instance.world_from_object == Affine3d{};
-    roundings[k] = in_world ? 4 : 16;
-    all_in_world = all_in_world && in_world;
-  }
-  const Corners<F> corners = arrays.load(has);
+  const LaneTriangles triangles = lane_triangles(scene, hits, has);
   const F u = hits.u.load(), v = hits.v.load();
-  Affine3<D> map;
-  if (!all_in_world) map = maps.load();
-  interpolate_attributes(corners, has, u, v, s);
-  if (measure) measure_uvs(corners, has, all_in_world ? nullptr : &map, s);
-  place(corners, has, u, v, all_in_world ? nullptr : &map, roundings.load(), s);
+  interpolate_attributes(triangles.corners, has, u, v, s);
+  if (measure) measure_uvs(triangles.corners, has, triangles.map(), s);
+  place(triangles.corners, has, u, v, triangles.map(), triangles.roundings, s);
 }
 
 void set_shape_points(const Scene& scene, const LaneHits& hits, bool has_textures, BasicSurfacePoint<F>& s) {
@@ -408,12 +493,63 @@ BasicSurfacePoint<F> surface_points(const Scene& scene, const LaneHits& hits, co
   return s;
 }
 
+namespace {
+
+/// How much larger everything gets; 0 where the map does not keep shapes as they are.
+double similarity_scale(const Affine3d& m) {
+  const double squared = dot(m.x, m.x), tolerance = 1e-6 * squared;
+  const bool square =
+      std::abs(dot(m.x, m.y)) < tolerance && std::abs(dot(m.y, m.z)) < tolerance && std::abs(dot(m.z, m.x)) < tolerance;
+  const bool alike = std::abs(dot(m.y, m.y) - squared) < tolerance && std::abs(dot(m.z, m.z) - squared) < tolerance;
+  return square && alike ? std::sqrt(squared) : 0;
+}
+
+float shape_curvature(const Scene& scene, const HitIds& ids, const SurfacePoint& point, float width, float time) {
+  if (const auto* sphere =
+          std::get_if<Sphere>(&scene.geometry.shapes[shape_instance(scene.geometry, ids.object).shape]))
+    if (const double scale = similarity_scale(world_from_object(scene.geometry, ids.object, time)); scale > 0)
+      return float(1 /
+                   std::max(sphere->radius * scale, double(width)));  // over more than the ball: as if it were as large
+  return float(ShapeSurroundings(scene, ids, point, double(width), time).mean_curvature());
+}
+
+template <class N>
+N finite_or_0(const N& x) {
+  return select(x - x == N(0), x, N(0));
+}
+
+}  // namespace
+
 float mean_curvature(const Scene& scene, const HitIds& ids, const SurfacePoint& point, float width,
                      float time) noexcept {
-  const double curvature = is_shape(scene.geometry, ids.object)
-                               ? ShapeSurroundings(scene, ids, point, double(width), time).mean_curvature()
-                               : mesh_curvature(scene, ids, time);
-  return std::isfinite(curvature) ? float(curvature) : 0;
+  const Geometry& geometry = scene.geometry;
+  if (is_shape(geometry, ids.object)) return finite_or_0(shape_curvature(scene, ids, point, width, time));
+  const uint32_t mesh = geometry.mesh_instances[ids.object].mesh;
+  const TriangleMesh& part = geometry.meshes[mesh].parts[ids.part];
+  if (part.normals.empty()) return 0;
+  const PosedPart posed(part, ids.part, track_of_mesh(geometry, mesh), time);
+  const Corners<float> corners = corners_of(posed, part, {.normals = true}, ids.primitive);
+  const Affine3d m = world_from_object(geometry, ids.object, time);
+  return finite_or_0(mesh_curvature(corners, m == Affine3d{} ? nullptr : &m));
+}
+
+F mean_curvature(const Scene& scene, const LaneHits& hits, const Attributes& has, const BasicSurfacePoint<F>& points,
+                 const F& width) noexcept {
+  if (is_shape(scene.geometry, hits.ids[0].object)) {
+    Vec3Array<D> p;
+    Vec3Array<F> ng;
+    LaneArray<F> widths, curvature;
+    p.store(points.p_world), ng.store(points.ng_world), widths.store(width);
+    for (size_t k = 0; k < kWidthOf<F>; ++k) {
+      SurfacePoint point;
+      point.p_world = p.get(k), point.ng_world = ng.get(k);
+      curvature[k] = shape_curvature(scene, hits.ids[k], point, widths[k], 0);
+    }
+    return finite_or_0(curvature.load());
+  }
+  if (!has.normals) return F(0);
+  const LaneTriangles triangles = lane_triangles(scene, hits, {.normals = true});
+  return finite_or_0(mesh_curvature(triangles.corners, triangles.map()));
 }
 
 void measure_shape_uvs(const Scene& scene, const HitIds& ids, float width, float time, SurfacePoint& point) noexcept {
@@ -431,7 +567,7 @@ SurfacePoint surface_point(const Scene& scene, const Crossing& crossing) noexcep
   SurfacePoint s;
   s.material = part.material;
   Attributes has = attributes(part);
-  has.normals = has.tangents = false;
+  has.normals = has.tangents = has.polygon_normals = false;
   const Corners<float> corners = corners_of(PosedPart(part, 0, nullptr, 0), part, has, crossing.primitive);
   interpolate_attributes(corners, has, crossing.u, crossing.v, s);
   return s;

@@ -51,15 +51,16 @@ struct SurfaceIds {
 /// What a mesh's part has beside positions.
 struct Attributes {
   bool normals = false, tangents = false, colors = false;
+  bool polygon_normals = false;  // in place of normals
   size_t uv_sets = 0;
   friend auto operator<=>(const Attributes&, const Attributes&) = default;
 };
 [[nodiscard]] inline Attributes attributes(const TriangleMesh& part) {
-  return {!part.normals.empty(), !part.tangents.empty(), !part.colors.empty(), part.uvs.size()};
+  return {!part.normals.empty(), !part.tangents.empty(), !part.colors.empty(),
+          part.normals.empty() && !part.polygon_normals.empty(), part.uvs.size()};
 }
 
-/// Hits side by side: all on shapes, or all on parts of meshes with the same attributes and no polygon normals. Nothing
-/// moves.
+/// Hits side by side: all on shapes, or all on parts of meshes with the same attributes. Nothing moves.
 struct LaneHits {
   std::array<HitIds, kWidthOf<ShadingLanes>> ids;
   Vec3Array<ShadingLanes> origin, direction;  // of the rays, in world space
@@ -76,6 +77,11 @@ struct LaneHits {
 /// vertices' normals, shapes that over `width` metres. 0 where there is none to be had.
 [[nodiscard]] float mean_curvature(const Scene& scene, const HitIds& ids, const SurfacePoint& point, float width,
                                    float time = 0) noexcept;
+
+/// The same of the points that surface_points gave, to the bit; `has` as there.
+[[nodiscard]] ShadingLanes mean_curvature(const Scene& scene, const LaneHits& hits, const Attributes& has,
+                                          const BasicSurfacePoint<ShadingLanes>& points,
+                                          const ShadingLanes& width) noexcept;
 
 /// Sets `uv_per_metre` of a point on a shape, from how far texture coordinates go over `width` metres. Meshes have it
 /// from surface_point.

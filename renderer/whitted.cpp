@@ -1,10 +1,12 @@
 #include "renderer/whitted.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <span>
 #include <utility>
 
+#include "core/lane_memory.h"
 #include "materials/fresnel.h"
 #include "materials/metallic_roughness.h"
 #include "materials/phong.h"
@@ -65,20 +67,23 @@ class Whitted {
         arena_(arena),
         radiance_(radiance),
         background_(background),
-        table_(texture_table(scene)) {}
+        table_(texture_table(scene)) {
+    arena_.shadow_by_light.resize(scene.lights.size());
+  }
 
   void run() {
     bool first = true;
     while (arena_.pending.size() > 0) {
       take_wave();
-      for (size_t i = 0; i < arena_.current.size(); ++i) ++arena_.rays_by_kind[size_t(arena_.current.paths[i].kind)];
+      count_rays(first);
       set_times(arena_.current.rays, [&](size_t i) { return arena_.current.paths[i].pixel; });
       log(first ? WaveKind::camera : WaveKind::bounced, arena_.current.rays);
+      coherence_ = first ? Coherence::coherent : Coherence::incoherent;
       arena_.clock.enter(Phase::traversal);
-      accelerated_.intersect(arena_.current.rays, first ? Coherence::coherent : Coherence::incoherent, arena_.hits);
+      accelerated_.intersect(arena_.current.rays, coherence_, arena_.hits);
       arena_.clock.enter(Phase::shading);
       shade_wave();
-      trace_shadows(first ? Coherence::coherent : Coherence::incoherent);
+      trace_shadows();
       first = false;
     }
   }
@@ -94,6 +99,15 @@ class Whitted {
     if (arena_.time_of_pixel.size() == 0) return;
     rays.time.resize(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) rays.time[i] = time_of(pixel_of(i));
+  }
+
+  void count_rays(bool of_camera) {
+    const size_t n = arena_.current.size();
+    if (of_camera) {
+      arena_.rays_by_kind[size_t(RayKind::camera)] += n;
+      return;
+    }
+    for (size_t i = 0; i < n; ++i) ++arena_.rays_by_kind[size_t(arena_.current.paths[i].kind)];
   }
 
   void log(WaveKind kind, const RayWave& rays) {
@@ -131,76 +145,167 @@ class Whitted {
   void shade_wave() {
     sort_by_group();
     const bool lanes = !observed && arena_.time_of_pixel.size() == 0;
-    const uint32_t* hits = arena_.sorted.data();
+    uint32_t* const rays = arena_.sorted.data();
+    size_t first = 0;
     for (size_t group = 0; group < groups_.size(); ++group) {
-      const size_t first = group == 0 ? 0 : arena_.group_ends[group - 1], end = arena_.group_ends[group];
-      if (lanes && groups_[group].in_lanes) {
-        for (size_t i = first; i < end; i += kLanes)
-          shade_in_lanes(groups_[group], {hits + i, std::min(kLanes, end - i)});
-        continue;
+      const size_t end = arena_.group_ends[group];
+      for (; first < end; first += std::min(kLanes, end - first)) {
+        const std::span<const uint32_t> block(rays + first, std::min(kLanes, end - first));
+        if (lanes && groups_[group].in_lanes)
+          shade_in_lanes(groups_[group], block);
+        else
+          shade_one_by_one(block);
+        if (shadows_ >= kShadowLimit) trace_shadows();
       }
-      for (size_t i = first; i < end; ++i) {
-        tell([&](TraceObserver& observer) { observer.look_at(hits[i]); });
-        shade(hits[i]);
-      }
+    }
+    shade_misses({rays + first, arena_.current.size() - first});
+  }
+
+  void shade_one_by_one(std::span<const uint32_t> hits) {
+    for (const uint32_t i : hits) {
+      tell([&](TraceObserver& observer) { observer.look_at(i); });
+      shade(i);
     }
   }
 
-  /// Counts, then places: `sorted` holds the wave's numbers group after group, each in the wave's order; what misses is
-  /// in group 0.
+  /// Counts, then places: `sorted` holds the wave's numbers group after group, each in the wave's order, and what
+  /// misses after the last group.
   void sort_by_group() {
     const HitWave& hits = arena_.hits;
-    const size_t n = arena_.current.size();
+    const size_t n = arena_.current.size(), misses = groups_.size();
     Lanes<uint32_t>&ends = arena_.group_ends, &group_of = arena_.group_of_hit;
-    ends.resize(groups_.size()), group_of.resize(n), arena_.sorted.resize(n);
-    std::fill_n(ends.data(), groups_.size(), 0);
-    for (size_t i = 0; i < n; ++i) {
-      group_of[i] = hits.object[i] == kNone ? 0 : groups_.of(scene_.geometry, hits.object[i], hits.part[i]);
-      ++ends[group_of[i]];
-    }
+    ends.resize(misses + 1), group_of.resize(n), arena_.sorted.resize(n);
+    std::fill_n(ends.data(), ends.size(), 0);
+    for (size_t i = 0; i < n; ++i)
+      group_of[i] =
+          hits.object[i] == kNone ? uint32_t(misses) : groups_.of(scene_.geometry, hits.object[i], hits.part[i]);
+    // Neighbours are mostly of one group, whose number is kept at hand.
+    const auto for_each_place = [&](const auto& visit) {
+      size_t group = misses;
+      uint32_t end = ends[group];
+      for (size_t i = 0; i < n; ++i) {
+        if (group_of[i] != group) ends[group] = end, group = group_of[i], end = ends[group];
+        visit(i, end++);
+      }
+      ends[group] = end;
+    };
+    for_each_place([](size_t, uint32_t) {});
     uint32_t sum = 0;
-    for (size_t group = 0; group < groups_.size(); ++group) sum += std::exchange(ends[group], sum);
-    for (size_t i = 0; i < n; ++i) arena_.sorted[ends[group_of[i]]++] = uint32_t(i);
+    for (size_t group = 0; group <= misses; ++group) sum += std::exchange(ends[group], sum);
+    for_each_place([&](size_t i, uint32_t place) { arena_.sorted[place] = uint32_t(i); });
   }
 
   static constexpr size_t kLanes = kWidthOf<ShadingLanes>;
 
+  /// First those that see the background; the others' numbers move to the front of `rays`.
+  void shade_misses(std::span<uint32_t> rays) {
+    size_t others = 0;
+    for (const uint32_t i : rays) {
+      const Path& path = arena_.current.paths[i];
+      const bool view = path.kind == RayKind::camera || path.kind == RayKind::straight;
+      const bool uncovers = options_.transparent && view;
+      if (!uncovers && !sees_background(path)) {
+        rays[others++] = i;
+        continue;
+      }
+      tell([&](TraceObserver& observer) { observer.look_at(i); });
+      if (!uncovers) {
+        add(path, LightTerm::background, path.weight * scene_.background);
+        continue;
+      }
+      background_[path.pixel] += path.weight.r;  // a product of (1 - alpha): grey
+      tell([&](TraceObserver& observer) { observer.uncover(path.weight.r); });
+    }
+    constexpr size_t kTogether = observed ? 1 : kLanes;
+    for (size_t first = 0; first < others; first += kTogether)
+      add_environment(rays.subspan(first, std::min(kTogether, others - first)));
+  }
+
+  void add_environment(std::span<const uint32_t> rays) {
+    if constexpr (observed) {
+      const Path& path = arena_.current.paths[rays[0]];
+      tell([&](TraceObserver& observer) { observer.look_at(rays[0]); });
+      const Vec3f direction = arena_.current.rays.direction.get(rays[0]);
+      return add(path, LightTerm::environment,
+                 path.weight * environment_radiance(*scene_.environment, direction, path.roughness));
+    }
+    Vec3Array<ShadingLanes> direction;
+    LaneArray<ShadingLanes> roughness;
+    RgbArray<ShadingLanes> weight, light;
+    for (size_t k = 0; k < kLanes; ++k) {
+      const uint32_t i = rays[k < rays.size() ? k : 0];
+      const Path& path = arena_.current.paths[i];
+      direction.set(k, arena_.current.rays.direction.get(i)), weight.set(k, path.weight);
+      roughness[k] = path.roughness;
+    }
+    light.store(weight.load() * environment_radiance(*scene_.environment, direction.load(), roughness.load()));
+    for (size_t k = 0; k < rays.size(); ++k) radiance_[arena_.current.paths[rays[k]].pixel] += light.get(k);
+  }
+
   void shade_in_lanes(const ShadingGroup& group, std::span<const uint32_t> hits) {
+    load_lanes(hits);
+    LaneLight& light = arena_.lane_light;
+    shade_lanes(scene_, group, arena_.lane_work, arena_.clock, light);
+    const auto& pixel = arena_.lane_work.pixel;
+    if (light.emits)
+      for (size_t k = 0; k < hits.size(); ++k) radiance_[pixel[k]] += light.emission.get(k);
+    for (size_t k = 0; k < hits.size(); ++k) radiance_[pixel[k]] += light.ambient.get(k);
+    const uint32_t present = (1u << hits.size()) - 1;
+    for (size_t k = 0; k < light.shadow.size(); ++k) push_shadows(k, light.shadow[k], light.shadow[k].lanes & present);
+    // Ray by ray in the order in which they would be spawned one by one.
+    for (uint32_t lanes = (light.mirror.lanes | light.refracted.lanes) & present; lanes; lanes &= lanes - 1) {
+      const auto k = size_t(std::countr_zero(lanes));
+      push_spawned(hits[k], k, light.mirror, RayKind::mirror);
+      push_spawned(hits[k], k, light.refracted, RayKind::refracted);
+    }
+  }
+
+  /// Lanes beyond the last hit are as the first.
+  void load_lanes(std::span<const uint32_t> hits) {
     LaneWork& work = arena_.lane_work;
     const RayWave& rays = arena_.current.rays;
+    const HitWave& found = arena_.hits;
+    LaneArray<IntOf<ShadingLanes>> numbers;
     for (size_t k = 0; k < kLanes; ++k) {
       const uint32_t i = hits[k < hits.size() ? k : 0];
       const Path& path = arena_.current.paths[i];
-      work.hits.ids[k] = {arena_.hits.object[i], arena_.hits.part[i], arena_.hits.primitive[i]};
-      work.hits.origin.set(k, rays.origin.get(i)), work.hits.direction.set(k, rays.direction.get(i));
-      work.hits.t[k] = arena_.hits.t[i], work.hits.u[k] = arena_.hits.u[i], work.hits.v[k] = arena_.hits.v[i];
-      work.weight.set(k, arriving_weight(path, arena_.hits.t[i]));
-      work.cone_width[k] = path.cone.at(arena_.hits.t[i]).width;
+      numbers[k] = int32_t(i);
+      work.hits.ids[k] = {found.object[i], found.part[i], found.primitive[i]};
+      work.weight.set(k, arriving_weight(path, found.t[i]));
+      const Cone cone = path.cone.at(found.t[i]);
+      work.cone_width[k] = cone.width, work.cone_spread[k] = cone.spread;
+      work.pixel[k] = path.pixel;
     }
-    LaneLight& light = arena_.lane_light;
-    shade_lanes(scene_, group, work, light);
-    for (size_t k = 0; k < hits.size(); ++k) {
-      const Path& path = arena_.current.paths[hits[k]];
-      radiance_[path.pixel] += light.emission.get(k);
-      radiance_[path.pixel] += light.ambient.get(k);
-      for (const LaneRays& shadow : light.shadow)
-        if (shadow.lanes >> k & 1)
-          push_shadow({shadow.origin.get(k), shadow.direction.get(k), 0, shadow.t_max[k]}, path.pixel,
-                      shadow.weight.get(k));
-      const auto spawned = [&](const LaneRays& spawned_rays, RayKind kind, float eta) {
-        if (!(spawned_rays.lanes >> k & 1)) return;
-        const Vec3f direction = spawned_rays.direction.get(k);
-        SurfacePoint surface;
-        surface.p_world = light.p_world.get(k), surface.ng_world = light.ng_world.get(k);
-        surface.ns_world = light.ns_world.get(k);
-        const Cone cone = cone_of(path, work.hits.ids[k], surface, path.cone.at(work.hits.t[k]),
-                                  work.hits.direction.get(k), light.n.get(k), direction, eta);
-        const Path next = next_path(path, spawned_rays.weight.get(k), kind, path.media, cone, light.roughness[k]);
-        if (outcome_of(next) == SpawnOutcome::traced)
-          arena_.pending.push({spawned_rays.origin.get(k), direction}, next);
-      };
-      spawned(light.mirror, RayKind::mirror, 1), spawned(light.refracted, RayKind::refracted, light.eta[k]);
-    }
+    const IntOf<ShadingLanes> number = numbers.load();
+    const auto load = [&](const Lanes<float>& row) { return gather<ShadingLanes>(row.data(), number); };
+    work.hits.origin.store({load(rays.origin.x), load(rays.origin.y), load(rays.origin.z)});
+    work.hits.direction.store({load(rays.direction.x), load(rays.direction.y), load(rays.direction.z)});
+    work.hits.t.store(load(found.t)), work.hits.u.store(load(found.u)), work.hits.v.store(load(found.v));
+  }
+
+  void push_shadows(size_t of_light, const LaneRays& rays, uint32_t lanes) {
+    if (lanes == 0) return;
+    ShadowWave& wave = arena_.shadow_by_light[of_light];
+    const auto append = [&](Lanes<float>& row, const LaneArray<ShadingLanes>& values) {
+      append_lanes(row, lanes, values.values);
+    };
+    append(wave.rays.origin.x, rays.origin.x), append(wave.rays.origin.y, rays.origin.y);
+    append(wave.rays.origin.z, rays.origin.z), append(wave.rays.direction.x, rays.direction.x);
+    append(wave.rays.direction.y, rays.direction.y), append(wave.rays.direction.z, rays.direction.z);
+    append(wave.rays.t_min, LaneArray<ShadingLanes>{}), append(wave.rays.t_max, rays.t_max);
+    append(wave.red, rays.weight.r), append(wave.green, rays.weight.g), append(wave.blue, rays.weight.b);
+    append_lanes(wave.pixel, lanes, arena_.lane_work.pixel);
+    shadows_ += size_t(std::popcount(lanes));
+  }
+
+  /// What a lane spawned, if anything.
+  void push_spawned(uint32_t i, size_t k, const LaneRays& rays, RayKind kind) {
+    if (!(rays.lanes >> k & 1)) return;
+    const Path& path = arena_.current.paths[i];
+    const Cone cone{arena_.lane_work.cone_width[k], rays.cone_spread[k]};
+    const Path next = next_path(path, rays.weight.get(k), kind, path.media, cone, arena_.lane_light.roughness[k]);
+    if (outcome_of(next) == SpawnOutcome::traced)
+      arena_.pending.push({rays.origin.get(k), rays.direction.get(k)}, next);
   }
 
   /// What is left of a ray's weight after a distance.
@@ -213,12 +318,8 @@ class Whitted {
     const HitWave& hits = arena_.hits;
     const Rayf ray = arena_.current.rays.get(i);
     const bool view = path.kind == RayKind::camera || path.kind == RayKind::straight;
-    if (hits.object[i] == kNone) {
-      if (!options_.transparent || !view) return add_sky(path, ray.direction);
-      background_[path.pixel] += path.weight.r;  // a product of (1 - alpha): grey
-      return tell([&](TraceObserver& observer) { observer.uncover(path.weight.r); });
-    }
     const HitIds ids{hits.object[i], hits.part[i], hits.primitive[i]};
+    arena_.clock.enter_part(Phase::surface_points);
     SurfacePoint surface = surface_point(scene_, ray, ids, hits.t[i], hits.u[i], hits.v[i], time_of(path.pixel));
     const Cone cone = path.cone.at(hits.t[i]);
     surface.footprint = footprint(cone.width, surface.ng_world, ray.direction);
@@ -226,12 +327,14 @@ class Whitted {
     if (!scene_.images.empty() && material.model != ShadingModel::phong)  // which knows no mipmaps
       measure_shape_uvs(scene_, ids, surface.footprint, time_of(path.pixel), surface);
     const SurfaceInputs inputs = surface.inputs();
+    arena_.clock.enter_part(Phase::textures);
     const float alpha = material.alpha_mode == AlphaMode::blend ? coverage(material, table_, inputs) : 1.0f;
     const Rgb arriving = arriving_weight(path, hits.t[i]);
     Vec3f n = shading_normal(surface, material.normal_texture, material.normal_scale, table_);
     const bool enters = dot(n, ray.direction) < 0;
     if (!enters) n = -n;
     Shading s{ids, surface, material, ray.direction, -ray.direction, n, enters, arriving * alpha, path, cone, {}};
+    arena_.clock.enter_part(Phase::shading);
     tell([&](TraceObserver& observer) { observer.hit({ids, hits.t[i], surface, n, enters, alpha, arriving}); });
     if (bounds_body(material)) {
       s.boundary =
@@ -268,13 +371,7 @@ class Whitted {
     }
   }
 
-  /// What a ray sees that leaves the scene.
-  void add_sky(const Path& path, const Vec3f& direction) {
-    if (sees_background(path)) return add(path, LightTerm::background, path.weight * scene_.background);
-    add(path, LightTerm::environment,
-        path.weight * environment_radiance(*scene_.environment, direction, path.roughness));
-  }
-
+  /// Of a ray that leaves the scene; else it sees the environment.
   [[nodiscard]] bool sees_background(const Path& path) const {
     if (!scene_.environment) return true;
     const bool view = path.kind == RayKind::camera || path.kind == RayKind::straight;
@@ -437,7 +534,8 @@ class Whitted {
                              const Vec3f& d, const Vec3f& n, const Vec3f& direction, float eta) const {
     if (scene_.images.empty()) return cone;
     const float outward = mean_curvature(scene_, ids, surface, cone.width, time_of(path.pixel));
-    return deflected(cone, d, n, direction, eta, dot(surface.ns_world, d) < 0 ? outward : -outward);
+    const float curvature = dot(surface.ns_world, d) < 0 ? outward : -outward;
+    return {cone.width, deflected_spread(cone.width, cone.spread, d, n, direction, eta, curvature)};
   }
 
   /// One deeper than `path`, from a surface of that roughness.
@@ -495,33 +593,36 @@ class Whitted {
       const Rgb all = reflected(bsdf, to_light), specular = reflected(without_diffuse(bsdf), to_light);
       observer.ask({index, ray, arriving.distance, arriving.radiance, s.weight, all - specular, specular});
     });
-    push_shadow(ray, s.path.pixel, light_to_eye);
+    push_shadow(index, ray, s.path.pixel, light_to_eye);
   }
 
   /// `light`: what the pixel gets of it where nothing is in the way.
-  void push_shadow(const Rayf& ray, uint32_t pixel, const Rgb& light) {
-    const size_t i = arena_.shadow.size();
-    arena_.shadow.resize(i + 1), arena_.shadow_pixel.resize(i + 1), arena_.shadow_light.resize(i + 1);
-    arena_.shadow.set(i, ray);
-    arena_.shadow_pixel[i] = pixel, arena_.shadow_light[i] = light;
-    if (i + 1 == kShadowLimit) trace_shadows(Coherence::incoherent);
+  void push_shadow(uint32_t of_light, const Rayf& ray, uint32_t pixel, const Rgb& light) {
+    ShadowWave& wave = arena_.shadow_by_light[of_light];
+    wave.rays.push(ray);
+    wave.pixel.push(pixel), wave.red.push(light.r), wave.green.push(light.g), wave.blue.push(light.b);
+    if constexpr (observed) wave.number.push(uint32_t(shadows_));
+    ++shadows_;
   }
 
-  void trace_shadows(Coherence coherence) {
-    if (arena_.shadow.size() == 0) return;
-    arena_.shadow_rays += arena_.shadow.size();
-    set_times(arena_.shadow, [&](size_t i) { return arena_.shadow_pixel[i]; });
-    log(coherence == Coherence::coherent ? WaveKind::camera_shadow : WaveKind::bounced_shadow, arena_.shadow);
+  /// Light by light, so that neighbours run side by side.
+  void trace_shadows() {
+    if (shadows_ == 0) return;
+    ShadowWave& all = arena_.shadow;
+    all.clear();
+    for (ShadowWave& wave : arena_.shadow_by_light) all.append(wave), wave.clear();
+    arena_.shadow_rays += std::exchange(shadows_, 0);
+    set_times(all.rays, [&](size_t i) { return all.pixel[i]; });
+    log(coherence_ == Coherence::coherent ? WaveKind::camera_shadow : WaveKind::bounced_shadow, all.rays);
     arena_.clock.enter(Phase::traversal);
-    accelerated_.transmittance(arena_.shadow, coherence, arena_.visible);
+    accelerated_.transmittance(all.rays, coherence_, arena_.visible);
     arena_.clock.enter(Phase::shading);
-    for (size_t i = 0; i < arena_.shadow.size(); ++i) {
-      const Rgb light = arena_.shadow_light[i] * arena_.visible[i];
-      radiance_[arena_.shadow_pixel[i]] += light;
-      tell([&](TraceObserver& observer) { observer.answer(i, arena_.visible[i], light); });
+    for (size_t i = 0; i < all.size(); ++i) {
+      const Rgb light = Rgb{all.red[i], all.green[i], all.blue[i]} * arena_.visible[i];
+      radiance_[all.pixel[i]] += light;
+      tell([&](TraceObserver& observer) { observer.answer(all.number[i], arena_.visible[i], light); });
     }
     tell([&](TraceObserver& observer) { observer.answered(); });
-    arena_.shadow.resize(0), arena_.shadow_pixel.resize(0), arena_.shadow_light.resize(0);
   }
 
   const Scene& scene_;
@@ -532,9 +633,20 @@ class Whitted {
   Rgb* radiance_;
   float* background_;
   TextureTable table_;
+  size_t shadows_ = 0;                         // in arena_.shadow_by_light
+  Coherence coherence_ = Coherence::coherent;  // of the wave at hand
 };
 
 }  // namespace
+
+void ShadowWave::clear() {
+  rays.resize(0), pixel.resize(0), red.resize(0), green.resize(0), blue.resize(0), number.resize(0);
+}
+
+void ShadowWave::append(const ShadowWave& other) {
+  rays.append(other.rays), pixel.append(other.pixel), number.append(other.number);
+  red.append(other.red), green.append(other.green), blue.append(other.blue);
+}
 
 void trace_whitted(const Scene& scene, const AcceleratedScene& accelerated, const ShadingGroups& groups,
                    const RenderOptions& options, WaveArena& arena, Rgb* radiance, float* background) {

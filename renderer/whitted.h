@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "renderer/camera_ray.h"
 #include "renderer/lane_shading.h"
@@ -36,20 +37,28 @@ struct PathWave {
 
   [[nodiscard]] size_t size() const { return rays.size(); }
   void resize(size_t n) { rays.resize(n), paths.resize(n); }
-  void push(const Rayf& ray, const Path& path) {
-    const size_t i = size();
-    resize(i + 1);
-    rays.set(i, ray), paths[i] = path;
-  }
+  void push(const Rayf& ray, const Path& path) { rays.push(ray), paths.push(path); }
+};
+
+/// Shadow rays and what their pixels get of the light where nothing is in its way.
+struct ShadowWave {
+  RayWave rays;
+  Lanes<uint32_t> pixel;
+  Lanes<float> red, green, blue;
+  Lanes<uint32_t> number;  // in the order of asking, for an observer; else of no elements
+
+  [[nodiscard]] size_t size() const { return pixel.size(); }
+  void clear();
+  void append(const ShadowWave& other);
 };
 
 /// Memory of one thread, reused from cell to cell.
 struct WaveArena {
   PathWave current, pending;
   HitWave hits;
-  RayWave shadow;
-  Lanes<uint32_t> shadow_pixel;
-  Lanes<Rgb> shadow_light, visible;
+  std::vector<ShadowWave> shadow_by_light;
+  ShadowWave shadow;  // those of all lights, one after the other, when they are traced
+  Lanes<Rgb> visible;
   Lanes<uint32_t> group_of_hit, group_ends, sorted;  // the wave's hits by shading group
   LaneWork lane_work;
   LaneLight lane_light;

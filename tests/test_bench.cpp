@@ -120,12 +120,18 @@ TEST(RenderControl, KnowsWhereTheTimeWent) {
   (void)render(scene, accelerated, framing_camera(scene.geometry, 1), options, control);
   const auto wall = uint64_t(std::chrono::nanoseconds(std::chrono::steady_clock::now() - start).count());
   uint64_t spent = 0;
-  for (const auto& phase : control.phase_ns) {
-    EXPECT_GT(phase, 0u);
-    spent += phase;
+  for (size_t k = 0; k < kPhases; ++k) {
+    const bool part_of_shading = Phase(k) == Phase::surface_points || Phase(k) == Phase::textures;
+    EXPECT_EQ(control.phase_ns[k] == 0, part_of_shading);
+    spent += control.phase_ns[k];
   }
   EXPECT_LE(spent, wall);
   EXPECT_GE(control.first_tile_ns, std::chrono::nanoseconds(start.time_since_epoch()).count());
+
+  RenderControl split;
+  split.splits_shading = true;
+  (void)render(scene, accelerated, framing_camera(scene.geometry, 1), options, split);
+  for (size_t k = 0; k < kPhases; ++k) EXPECT_EQ(split.phase_ns[k] == 0, Phase(k) == Phase::textures);  // it has none
 }
 
 }  // namespace

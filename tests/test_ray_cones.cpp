@@ -15,6 +15,10 @@
 namespace alhazen {
 namespace {
 
+Cone deflected(const Cone& cone, const Vec3f& d, const Vec3f& n, const Vec3f& direction, float eta, float curvature) {
+  return {cone.width, deflected_spread(cone.width, cone.spread, d, n, direction, eta, curvature)};
+}
+
 /// Turned, moved and scaled by 3.
 Affine3d somewhere() {
   Affine3d m;

@@ -1,0 +1,79 @@
+// Loads where each lane has an address of its own.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "core/lane_vec.h"
+#include "core/lanes.h"
+
+#if defined __AVX2__
+#include <immintrin.h>
+#endif
+
+namespace alhazen {
+
+/// Of the element of each lane's number, from a base that is common to them.
+template <class I, class T>
+[[nodiscard]] AddressOf<I> address_of(const T* base, const I& index) {
+  static_assert(std::has_single_bit(sizeof(T)));
+  const AddressOf<I> first(reinterpret_cast<uintptr_t>(base));
+  return first + (convert<AddressOf<I>>(index) << std::countr_zero(sizeof(T)));
+}
+
+/// The number of 32 bits at each address, which need not be aligned.
+template <class N>
+[[nodiscard]] N load_at(const AddressOf<N>& addresses) {
+  static_assert(sizeof(ScalarOf<N>) == 4);
+#if defined __AVX512F__ && defined __GLIBCXX__
+  if constexpr (kWidthOf<N> == 16) {
+    const auto halves = std::experimental::split<std::experimental::native_simd<uint64_t>>(addresses);
+    const __m256i low = _mm512_i64gather_epi32(static_cast<__m512i>(halves[0]), nullptr, 1);
+    const __m256i high = _mm512_i64gather_epi32(static_cast<__m512i>(halves[1]), nullptr, 1);
+    return std::bit_cast<N>(_mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1));
+  }
+#elif defined __AVX2__ && defined __GLIBCXX__
+  if constexpr (kWidthOf<N> == 8) {
+    const auto halves = std::experimental::split<std::experimental::native_simd<uint64_t>>(addresses);
+    const int* const base = nullptr;
+    const __m128i low = _mm256_i64gather_epi32(base, static_cast<__m256i>(halves[0]), 1);
+    const __m128i high = _mm256_i64gather_epi32(base, static_cast<__m256i>(halves[1]), 1);
+    return std::bit_cast<N>(_mm256_set_m128i(high, low));
+  }
+#endif
+  const auto load = [](uint64_t address) {
+    ScalarOf<N> number;
+    std::memcpy(&number, reinterpret_cast<const void*>(uintptr_t(address)), sizeof number);
+    return number;
+  };
+  if constexpr (IsLanes<N>)
+    return N([&](auto k) { return load(addresses[k]); });
+  else
+    return load(addresses);
+}
+
+/// table[index] in each lane.
+template <class F>
+[[nodiscard]] F gather(const float* table, const IntOf<F>& index) {
+  return load_at<F>(address_of(table, index));
+}
+
+/// Appends the values whose bit is set, in their order.
+template <class T, size_t n>
+void append_lanes(Lanes<T>& to, uint32_t lanes, const std::array<T, n>& values) {
+  static_assert(sizeof(T) == 4);
+  const size_t at = to.size();
+  to.resize(at + n);
+#if defined __AVX512F__
+  if constexpr (n == 16) {
+    const __m512i packed = _mm512_maskz_compress_epi32(__mmask16(lanes), _mm512_loadu_si512(values.data()));
+    _mm512_storeu_si512(&to[at], packed);
+    return to.resize(at + size_t(std::popcount(lanes)));
+  }
+#endif
+  size_t end = at;
+  for (; lanes; lanes &= lanes - 1) to[end++] = values[size_t(std::countr_zero(lanes))];
+  to.resize(end);
+}
+
+}  // namespace alhazen
