@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -123,6 +124,12 @@ std::string number(double v) {
 
 std::string number(const Json& v) { return v.is_number_float() ? number(v.get<double>()) : v.dump(); }
 
+std::string format_seconds(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f s", seconds);
+  return text;
+}
+
 std::string point_text(const Json& p) { return number(p[0]) + " " + number(p[1]) + " " + number(p[2]); }
 
 std::string bounds_text(const Json& bounds) {
@@ -191,12 +198,15 @@ std::string info_text(const Json& info) {
          row("skins", number(info["skins"])) + row("animations", animations_text(info["animations"])) +
          rows("lights", info["lights"], light_text) + rows("cameras", info["cameras"], camera_text) +
          (info["measured"].empty() ? "" : rows("measured", info["measured"], measured_text)) +
-         row("bounds", bounds_text(info["bounds"])) + rows("extensions", info["extensions"], extension_text);
+         row("bounds", bounds_text(info["bounds"])) + rows("extensions", info["extensions"], extension_text) +
+         row("loading", format_seconds(info["load_s"]) + ", without decoding images or building hierarchies");
 }
 
 int run_info(const std::string& file, const LoadLimits& limits, bool as_json) {
   const auto warn = [](const std::string& text) { std::fprintf(stderr, "warning: %s\n", text.c_str()); };
-  const Json info = info_json(file, warn, std::make_shared<LoadBudget>(limits));
+  const auto start = std::chrono::steady_clock::now();
+  Json info = info_json(file, warn, std::make_shared<LoadBudget>(limits));
+  info["load_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::string text = as_json ? info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : info_text(info);
   print(text);
   return int(ExitStatus::done);

@@ -11,12 +11,14 @@ import json
 import math
 import os
 import resource
+import shutil
 import statistics
 import struct
 import subprocess
 import sys
 import tempfile
 import time
+import urllib.parse
 
 PROGRAM = os.path.abspath(sys.argv[1])
 
@@ -75,8 +77,7 @@ def write_glb(path, mesh, lights=1, places=None, camera_at=(0, 1.2, 1.9)):
 
 
 def relit(folder, file):
-    """The file, with point lights about it if it has no light: a copy beside it would lose its images, so that the
-    copy's URIs lead back."""
+    """The file or, where it has no light, a copy with point lights about it, beside copies of what it refers to."""
     info = json.loads(subprocess.run([PROGRAM, "info", "--json", file], check=True, capture_output=True, text=True).stdout)
     if info["lights"]:
         return file
@@ -98,8 +99,11 @@ def relit(folder, file):
         "lights": [{"type": "point", "intensity": 6 * size * size / lights}]}
     document.setdefault("extensionsUsed", []).append("KHR_lights_punctual")
     for item in document.get("buffers", []) + document.get("images", []):
-        if not item.get("uri", "data:").startswith("data:"):
-            item["uri"] = os.path.relpath(os.path.join(os.path.dirname(os.path.abspath(file)), item["uri"]), folder)
+        name = urllib.parse.unquote(item.get("uri", "data:"))
+        if not name.startswith("data:"):
+            copy = os.path.join(folder, name)
+            os.makedirs(os.path.dirname(copy), exist_ok=True)
+            shutil.copyfile(os.path.join(os.path.dirname(file), name), copy)
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
     path = os.path.join(folder, "relit-" + os.path.basename(file))
@@ -223,7 +227,7 @@ def efficiency(folder, files):
             shares = ", ".join(f"{name} {100 * seconds / frame:.0f} %" for name, seconds in result["phase_s"].items())
             ratio = statistics.median(t / f for t, f in zip(result["traversal_s"], result["frame_s"]))
             single = statistics.median(f / s for s, f in zip(result["single_ray_traversal_s"], result["frame_s"]))
-            print(f"{os.path.basename(scene)}, {result['threads']} threads, robust: efficiency {ratio:.2f}; frame {single:.2f} x "
+            print(f"{os.path.basename(scene)}, threads: {result['threads']}, robust: efficiency {ratio:.2f}; frame {single:.2f} x "
                   f"single rays alone; {frame:.2f} s: {shares}", flush=True)
 
 

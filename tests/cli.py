@@ -88,6 +88,8 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(info[key], len(gltf[key]), key)
         triangles = sum(gltf["accessors"][p["indices"]]["count"] // 3 for m in gltf["meshes"] for p in m["primitives"])
         self.assertEqual(info["triangles"], triangles)
+        self.assertGreater(info["load_s"], 0)
+        self.assertRegex(run("info", SCENE).stdout, r"\nloading +[0-9.]+ s, ")
         self.assertEqual(info["shapes"], len(gltf["extensions"]["ALHAZEN_shapes"]["shapes"]))
         self.assertEqual(len(info["lights"]), len(gltf["extensions"]["KHR_lights_punctual"]["lights"]))
         self.assertEqual([c["name"] for c in info["cameras"]], [c["name"] for c in gltf["cameras"]])
