@@ -126,10 +126,10 @@ def run(*arguments):
 
 def bench(scene, *arguments, size="256x256", repeat=3):
     """The results of `alhazen bench`, one for each number of threads."""
-    result = scene + ".json"
-    run("bench", scene, "--size", size, "--repeat", str(repeat), "--json", result, *arguments)
-    with open(result, encoding="utf-8") as file:
-        return json.load(file)["results"]
+    with tempfile.NamedTemporaryFile("r", suffix=".json", encoding="utf-8") as result:
+        run("bench", scene, "--size", size, "--repeat", str(repeat), "--json", result.name, *arguments)
+        with open(result.name, encoding="utf-8") as file:  # renamed to there, not written in place
+            return json.load(file)["results"]
 
 
 def least(f, times=5):

@@ -1,6 +1,5 @@
 #include "renderer/camera_ray.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace alhazen {

@@ -306,9 +306,10 @@ TEST(GltfErrors, AnExtensionThatIsRequiredButNotKnownIsAWarningWhereThatIsAskedF
       {text.begin(), text.end()}, "scene.gltf", [&](const std::string& w) { warnings.push_back(w); }, {},
       std::make_shared<LoadBudget>(LoadLimits{.ignore_required = true}));
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_EQ(warnings[0],
-            "scene.gltf: /extensionsRequired: requires ACME_unheard, which is ignored: not known, what it brings is left "
-            "out");
+  EXPECT_EQ(
+      warnings[0],
+      "scene.gltf: /extensionsRequired: requires ACME_unheard, which is ignored: not known, what it brings is left "
+      "out");
   EXPECT_FALSE(loaded.scene.geometry.meshes.empty());
 }
 
