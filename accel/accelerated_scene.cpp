@@ -411,7 +411,7 @@ struct AcceleratedScene::Traversal {
 
   /// The parts of a mesh that is placed once, in world space.
   static void attach_baked(Impl& impl, RTCScene scene, uint32_t object) {
-    const uint32_t index = impl.geometry->mesh_instances[object].mesh;
+    const uint32_t index = impl.geometry->mesh_instances.mesh_of(object);
     const Mesh& mesh = impl.geometry->meshes[index];
     for (uint32_t part = 0; part < mesh.parts.size(); ++part) {
       if (mesh.parts[part].triangles.empty()) continue;
@@ -424,7 +424,7 @@ struct AcceleratedScene::Traversal {
   /// The instance, with those after it that go into one group with it: how many these are.
   static uint32_t attach_instances(Impl& impl, RTCScene scene, uint32_t object) {
     const Geometry& geometry = *impl.geometry;
-    const MeshInstance& instance = geometry.mesh_instances[object];
+    const MeshInstance instance = geometry.mesh_instances[object];
     const Track<Affine3d>* const places = track_of_object(geometry, object);
     const RTCScene mesh = mesh_scene(impl, instance.mesh);
     impl.has_instances = true;
@@ -435,7 +435,7 @@ struct AcceleratedScene::Traversal {
     const uint32_t alike = group_size(geometry, object), count = alike >= kLeastInstanceGroup ? alike : 1;
     if (count > 1 || reach == 0) {
       impl.instance_groups.push_back(
-          std::make_unique<InstanceGroup>(InstanceGroup{&instance, object, count, mesh, places}));
+          std::make_unique<InstanceGroup>(InstanceGroup{&geometry.mesh_instances, object, count, mesh, places, {}}));
       attach(impl, scene, new_instance_geometry(impl.device, *impl.instance_groups.back()),
              {TopEntry::Kind::instances, object, 0});
     } else {
@@ -447,8 +447,8 @@ struct AcceleratedScene::Traversal {
   }
 
   static bool is_baked(const Impl& impl, uint32_t object) {
-    const MeshInstance& instance = impl.geometry->mesh_instances[object];
-    return impl.uses[instance.mesh] == 1 && instance.world_from_object == Affine3d{} &&
+    const MeshInstances& placed = impl.geometry->mesh_instances;
+    return impl.uses[placed.mesh_of(object)] == 1 && placed.world_from_object(object) == Affine3d{} &&
            !track_of_object(*impl.geometry, object);
   }
 
@@ -461,7 +461,7 @@ struct AcceleratedScene::Traversal {
     OwnedScene owned(new_scene(impl, impl.options));
     const RTCScene scene = owned.get();
     for (uint32_t object = 0; object < geometry.mesh_instances.size();) {
-      if (is_set(impl.options.moving.meshes, geometry.mesh_instances[object].mesh) != moving)
+      if (is_set(impl.options.moving.meshes, geometry.mesh_instances.mesh_of(object)) != moving)
         ++object;
       else if (is_baked(impl, object))
         attach_baked(impl, scene, object++);
@@ -493,7 +493,7 @@ struct AcceleratedScene::Traversal {
   static void build_rigid_meshes(Impl& impl) {
     const MovingParts& moving = impl.options.moving;
     for (uint32_t object = 0; object < impl.geometry->mesh_instances.size(); ++object) {
-      const uint32_t mesh = impl.geometry->mesh_instances[object].mesh;
+      const uint32_t mesh = impl.geometry->mesh_instances.mesh_of(object);
       if (is_set(moving.meshes, mesh) && !is_set(moving.deforming, mesh)) (void)mesh_scene(impl, mesh);
     }
   }
@@ -521,7 +521,6 @@ struct AcceleratedScene::Traversal {
 
   /// The lists that stand in place of those that were read.
   static void find_instances_again(Impl& impl) {
-    for (auto& group : impl.instance_groups) group->first = &impl.geometry->mesh_instances[group->first_object];
     for (auto& group : impl.shape_groups) alhazen::find_instances_again(*impl.geometry, *group);
   }
 };
@@ -531,7 +530,8 @@ namespace {
 /// What each object is, wherever it is.
 std::vector<uint64_t> identities(const Geometry& geometry) {
   std::vector<uint64_t> all;
-  for (const MeshInstance& placed : geometry.mesh_instances) all.push_back(uint64_t{placed.node} << 32 | placed.mesh);
+  const MeshInstances& meshes = geometry.mesh_instances;
+  for (size_t i = 0; i < meshes.size(); ++i) all.push_back(uint64_t{meshes.node_of(i)} << 32 | meshes.mesh_of(i));
   for (const ShapeInstance& placed : geometry.shape_instances) {
     all.push_back(uint64_t{placed.node} << 32 | placed.shape);
     all.push_back(placed.material);
@@ -544,8 +544,9 @@ std::vector<uint64_t> identities(const Geometry& geometry) {
 bool prefers_single_rays(const Geometry& geometry) {
   constexpr size_t kManyShapes = 3000;
   size_t triangles = 0;
-  for (const MeshInstance& instance : geometry.mesh_instances)
-    for (const TriangleMesh& part : geometry.meshes[instance.mesh].parts) triangles += part.triangles.size();
+  const std::vector<uint32_t> uses = uses_of_meshes(geometry);
+  for (size_t i = 0; i < uses.size(); ++i)
+    for (const TriangleMesh& part : geometry.meshes[i].parts) triangles += uses[i] * part.triangles.size();
   return geometry.shape_instances.size() > std::max(triangles, kManyShapes);
 }
 
@@ -565,8 +566,7 @@ AcceleratedScene::AcceleratedScene(const Geometry& geometry, const SurfaceFilter
   impl.incoherent_width = prefers_single_rays(geometry) ? 1 : impl.width;
   impl.geometry = &geometry, impl.options = options;
   impl.mesh_scenes.assign(geometry.meshes.size(), nullptr);
-  impl.uses.assign(geometry.meshes.size(), 0);
-  for (const MeshInstance& instance : geometry.mesh_instances) ++impl.uses[instance.mesh];
+  impl.uses = uses_of_meshes(geometry);
   impl.opacity.assign(filter.opacity.begin(), filter.opacity.end());
   if (!options.moving.nodes.empty()) impl.identities = identities(geometry);
 

@@ -41,24 +41,31 @@ std::vector<Vec3d> outline(const Mesh& mesh, uint64_t uses) {
 
 }  // namespace
 
+std::vector<uint32_t> uses_of_meshes(const Geometry& geometry) {
+  std::vector<uint32_t> uses(geometry.meshes.size(), 0);
+  for (size_t i = 0; i < geometry.mesh_instances.size(); ++i) ++uses[geometry.mesh_instances.mesh_of(i)];
+  return uses;
+}
+
 void bake_single_instances(Geometry& geometry) { bake_single_instances(geometry, {}); }
 
 void bake_single_instances(Geometry& geometry, std::span<const char> moving) {
   const auto stays = [&](size_t mesh) { return moving.empty() || !moving[mesh]; };
-  std::vector<uint32_t> uses(geometry.meshes.size(), 0);
-  for (const MeshInstance& instance : geometry.mesh_instances) ++uses[instance.mesh];
+  const std::vector<uint32_t> uses = uses_of_meshes(geometry);
   for (size_t i = 0; i < uses.size(); ++i)
     if (uses[i] == 0 && stays(i)) geometry.meshes[i].parts.clear();
-  for (MeshInstance& instance : geometry.mesh_instances) {
-    if (uses[instance.mesh] != 1 || !stays(instance.mesh) || instance.world_from_object == Affine3d{}) continue;
-    for (TriangleMesh& part : geometry.meshes[instance.mesh].parts) move_to_world(part, instance.world_from_object);
-    instance.world_from_object = {};
+  for (size_t i = 0; i < geometry.mesh_instances.size(); ++i) {
+    const uint32_t mesh = geometry.mesh_instances.mesh_of(i);
+    if (uses[mesh] != 1 || !stays(mesh)) continue;
+    const Affine3d world_from_object = geometry.mesh_instances.world_from_object(i);
+    if (world_from_object == Affine3d{}) continue;
+    for (TriangleMesh& part : geometry.meshes[mesh].parts) move_to_world(part, world_from_object);
+    geometry.mesh_instances.place(i, {});
   }
 }
 
 void visit_outline(const Geometry& geometry, const std::function<void(const Vec3d& p_world)>& visit) {
-  std::vector<uint64_t> uses(geometry.meshes.size(), 0);
-  for (const MeshInstance& instance : geometry.mesh_instances) ++uses[instance.mesh];
+  const std::vector<uint32_t> uses = uses_of_meshes(geometry);
   std::vector<std::vector<Vec3d>> outlines(geometry.meshes.size());
   for (size_t k = 0; k < outlines.size(); ++k)
     if (uses[k] > 0) outlines[k] = outline(geometry.meshes[k], uses[k]);

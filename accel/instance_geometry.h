@@ -1,9 +1,10 @@
 // Many places of one mesh as one Embree user geometry. Embree's own instances take hundreds of bytes each; this takes
-// what the hierarchy over their boxes does, and reads their maps where the scene has them.
+// some 30 for clusters of them and the hierarchy over these, and reads their maps where the scene has them.
 #pragma once
 
 #include "accel/embree.h"
 #include "accel/geometry.h"
+#include "accel/instance_clusters.h"
 
 namespace alhazen {
 
@@ -19,10 +20,11 @@ inline constexpr uint32_t kLeastInstanceGroup = 1024;
 /// Consecutive instances of one mesh that stand still, anywhere; or one that moves. A hit in one has the mesh's
 /// geometry and primitive, and as its instance the object number with the highest bit set.
 struct InstanceGroup {
-  const MeshInstance* first;  // Geometry's, in place
+  const MeshInstances* all;  // Geometry's, in place
   uint32_t first_object, count;
-  RTCScene mesh;                  // committed
-  const Track<Affine3d>* places;  // of the one that moves, else null
+  RTCScene mesh;                          // committed
+  const Track<Affine3d>* places;          // of the one that moves, else null
+  std::vector<InstanceCluster> clusters;  // of those that stand still: the primitives
 };
 
 inline constexpr uint32_t kInGroup = 0x80000000u;
@@ -30,7 +32,7 @@ inline constexpr uint32_t kInGroup = 0x80000000u;
 /// How many of the instances from `object` on are of the same mesh and stand still.
 [[nodiscard]] uint32_t group_size(const Geometry& geometry, uint32_t object);
 
-/// A committed user geometry over the group, which must outlive it.
-[[nodiscard]] RTCGeometry new_instance_geometry(RTCDevice device, const InstanceGroup& group);
+/// A committed user geometry over the group, which is given its clusters here and must outlive it.
+[[nodiscard]] RTCGeometry new_instance_geometry(RTCDevice device, InstanceGroup& group);
 
 }  // namespace alhazen

@@ -20,7 +20,7 @@ namespace alhazen {
 [[nodiscard]] inline Affine3d world_from_object(const Geometry& geometry, uint32_t object, float time) {
   if (const auto* track = track_of_object(geometry, object)) return at_time(*track, time);
   return is_shape(geometry, object) ? shape_instance(geometry, object).world_from_object
-                                    : geometry.mesh_instances[object].world_from_object;
+                                    : geometry.mesh_instances.world_from_object(object);
 }
 
 /// The deforming attributes of a mesh's part at a time, vertex by vertex.

@@ -37,7 +37,8 @@ Json counts_json(const LoadedScene& loaded) {
   const Geometry& geometry = scene.geometry;
   uint64_t stored = 0, placed = 0;
   for (const Mesh& mesh : geometry.meshes) stored += triangle_count(mesh);
-  for (const MeshInstance& instance : geometry.mesh_instances) placed += triangle_count(geometry.meshes[instance.mesh]);
+  const std::vector<uint32_t> uses = uses_of_meshes(geometry);
+  for (size_t i = 0; i < uses.size(); ++i) placed += uses[i] * triangle_count(geometry.meshes[i]);
   return {{"nodes", scene.node_names.size()},
           {"meshes", geometry.meshes.size()},
           {"mesh_instances", geometry.mesh_instances.size()},

@@ -92,7 +92,7 @@ EmbreeBaseline::EmbreeBaseline(const Geometry& geometry, bool robust)
     : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)), width_(embree::packet_width(device_)) {
   rtcSetSceneFlags(scene_, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
   rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);  // as ours
-  for (const MeshInstance& instance : geometry.mesh_instances) {
+  for (const MeshInstance instance : geometry.mesh_instances) {
     if (!(instance.world_from_object == Affine3d{})) stop("only meshes placed by the identity");
     for (const TriangleMesh& part : geometry.meshes[instance.mesh].parts) attach_triangles(device_, scene_, part);
   }

@@ -2,6 +2,8 @@
 // cancel.
 #pragma once
 
+#include <array>
+
 #include "core/ray.h"
 #include "core/vec.h"
 
@@ -60,6 +62,16 @@ template <class T>
   const Affine3<T> linear{
       Vec3<T>{r0.x, r1.x, r2.x} * s, Vec3<T>{r0.y, r1.y, r2.y} * s, Vec3<T>{r0.z, r1.z, r2.z} * s, {0, 0, 0}};
   return {linear.x, linear.y, linear.z, -transform_vector(linear, m.origin)};
+}
+
+/// The rotation of the quaternion (x, y, z, w), of any length but 0, after the scale.
+[[nodiscard]] constexpr Affine3d rotate_scale(const std::array<double, 4>& q, const Vec3d& scale) {
+  const double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], s = 2 / norm;
+  const double x = q[0], y = q[1], z = q[2], w = q[3];
+  return {Vec3d{1 - s * (y * y + z * z), s * (x * y + z * w), s * (x * z - y * w)} * scale.x,
+          Vec3d{s * (x * y - z * w), 1 - s * (x * x + z * z), s * (y * z + x * w)} * scale.y,
+          Vec3d{s * (x * z + y * w), s * (y * z - x * w), 1 - s * (x * x + y * y)} * scale.z,
+          {0, 0, 0}};
 }
 
 template <class T>

@@ -37,12 +37,12 @@ SceneBoxes::SceneBoxes(const Geometry& geometry) : geometry_(&geometry) {
   for (const Mesh& mesh : geometry.meshes) meshes_.push_back(mesh_boxes(mesh));
   std::vector<Bounds3d> boxes;
   for (uint32_t object = 0; object < geometry.mesh_instances.size() + geometry.shape_instances.size(); ++object) {
-    const Affine3d& m = world_from_object(object);
+    const Affine3d m = world_from_object(object);
     Bounds3d own;
     if (is_shape(geometry, object))
       own =
           std::visit([](const auto& s) { return bounds(s); }, geometry.shapes[shape_instance(geometry, object).shape]);
-    else if (const auto& tree = meshes_[geometry.mesh_instances[object].mesh].tree)
+    else if (const auto& tree = meshes_[geometry.mesh_instances.mesh_of(object)].tree)
       own = tree->bounds();
     const double margin = float_margin(m, own);
     boxes.push_back(widened(transform_bounds(m, own), margin));
@@ -77,7 +77,7 @@ void SceneBoxes::visit(const Rayf& ray, const double& t_limit, const Visit& visi
 }
 
 void SceneBoxes::visit_mesh(uint32_t object, const Rayf& ray, const double& t_limit, const Visit& visit) const {
-  const uint32_t mesh = geometry_->mesh_instances[object].mesh;
+  const uint32_t mesh = geometry_->mesh_instances.mesh_of(object);
   const MeshBoxes& boxes = meshes_[mesh];
   const auto line = object_line(placed_[object].object_from_world, Vec3d(ray.origin), Vec3d(ray.direction));
   boxes.tree->visit(wide_line(line, boxes.tree->bounds(), placed_[object].margin), double(ray.t_min), t_limit,
@@ -90,15 +90,15 @@ void SceneBoxes::visit_mesh(uint32_t object, const Rayf& ray, const double& t_li
                     });
 }
 
-const Affine3d& SceneBoxes::world_from_object(uint32_t object) const {
+Affine3d SceneBoxes::world_from_object(uint32_t object) const {
   return is_shape(*geometry_, object) ? shape_instance(*geometry_, object).world_from_object
-                                      : geometry_->mesh_instances[object].world_from_object;
+                                      : geometry_->mesh_instances.world_from_object(object);
 }
 
 Subject SceneBoxes::subject(const SurfaceId& id) const {
-  const Affine3d& m = world_from_object(id.object);
+  const Affine3d m = world_from_object(id.object);
   if (!is_shape(*geometry_, id.object)) {
-    const Mesh& mesh = geometry_->meshes[geometry_->mesh_instances[id.object].mesh];
+    const Mesh& mesh = geometry_->meshes[geometry_->mesh_instances.mesh_of(id.object)];
     return {.surface = triangle_of(mesh.parts[id.part], id.triangle), .world_from_object = m};
   }
   const Shape& shape = geometry_->shapes[shape_instance(*geometry_, id.object).shape];

@@ -33,7 +33,7 @@ class SceneBoxes {
   void visit(const Rayf& ray_world, const double& t_limit, const Visit& visit) const;
 
   [[nodiscard]] Subject subject(const SurfaceId& id) const;
-  [[nodiscard]] const Affine3d& world_from_object(uint32_t object) const;
+  [[nodiscard]] Affine3d world_from_object(uint32_t object) const;
 
  private:
   struct MeshBoxes {

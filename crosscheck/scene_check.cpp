@@ -112,7 +112,7 @@ struct SceneCheck::Impl {
     double t_limit = double(ray.t_max);
     boxes.visit(ray, t_limit, [&](const SurfaceId& id, const Triangle* triangle, const ObjectLine<double>&) {
       if (!triangle) return;
-      const auto t = hit_triangle(*triangle, ray, geometry.mesh_instances[id.object].world_from_object);
+      const auto t = hit_triangle(*triangle, ray, geometry.mesh_instances.world_from_object(id.object));
       if (!t || (nearest.answer.hit && !(*t < nearest.answer.t))) return;
       nearest.answer.hit = true, nearest.answer.t = *t, nearest.id = id, t_limit = double(*t);
       nearest.answer.normal_object = normal(*triangle, {}, 0);

@@ -49,7 +49,7 @@ class Selection {
       : geometry_(&geometry), node_names_(node_names) {
     for (const uint32_t object : objects) {
       members_.push_back({object, count_});
-      count_ += is_shape(geometry, object) ? 1 : triangle_count(geometry.meshes[geometry.mesh_instances[object].mesh]);
+      count_ += is_shape(geometry, object) ? 1 : triangle_count(geometry.meshes[geometry.mesh_instances.mesh_of(object)]);
     }
     if (count_ > 0) stride_ = spreading_stride(count_);
   }
@@ -83,7 +83,7 @@ class Selection {
   }
 
   bool place_triangle(uint32_t object, uint64_t number, Subject& subject) const {
-    const MeshInstance& instance = geometry_->mesh_instances[object];
+    const MeshInstance instance = geometry_->mesh_instances[object];
     const auto& parts = geometry_->meshes[instance.mesh].parts;
     size_t part = 0;
     while (number >= parts[part].triangles.size()) number -= parts[part++].triangles.size();
@@ -134,7 +134,7 @@ std::vector<uint32_t> objects_named(const Geometry& geometry, std::span<const st
   if (objects.empty()) objects = objects_where(geometry, by_node);
   if (!objects.empty()) return objects;
   return objects_where(geometry, [&](uint32_t o) {
-    return !is_shape(geometry, o) && geometry.meshes[geometry.mesh_instances[o].mesh].name == name;
+    return !is_shape(geometry, o) && geometry.meshes[geometry.mesh_instances.mesh_of(o)].name == name;
   });
 }
 
@@ -185,7 +185,7 @@ std::vector<std::string> scene_family_names(const Geometry& geometry, std::span<
   std::set<std::string> others;
   for (uint32_t object = 0; object < object_count(geometry); ++object) {
     if (const uint32_t node = node_of(geometry, object); node < node_names.size()) others.insert(node_names[node]);
-    if (!is_shape(geometry, object)) others.insert(geometry.meshes[geometry.mesh_instances[object].mesh].name);
+    if (!is_shape(geometry, object)) others.insert(geometry.meshes[geometry.mesh_instances.mesh_of(object)].name);
   }
   others.erase("");
   names.insert(names.end(), others.begin(), others.end());

@@ -31,7 +31,7 @@ std::string light_label(const Scene& scene, uint32_t light) {
 
 std::string object_label(const Geometry& geometry, uint32_t object) {
   if (is_shape(geometry, object)) return kShapeNames[geometry.shapes[shape_instance(geometry, object).shape].index()];
-  const uint32_t mesh = geometry.mesh_instances[object].mesh;
+  const uint32_t mesh = geometry.mesh_instances.mesh_of(object);
   const std::string& name = geometry.meshes[mesh].name;
   return name.empty() ? "mesh " + std::to_string(mesh) : "mesh " + name;
 }

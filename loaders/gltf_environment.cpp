@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "loaders/gltf_texture.h"
-#include "loaders/gltf_transform.h"
+#include "core/transform.h"
 #include "loaders/image_decode.h"
 #include "renderer/cube_environment.h"
 

@@ -20,14 +20,16 @@ std::string animation_to_play(const TimeChoice& choice) {
 }
 
 /// Those that show a mesh which moves have a new place, the others the one that they had, perhaps baked.
-void keep_places(const std::vector<char>& moving, const std::vector<MeshInstance>& before,
-                 std::vector<MeshInstance>& now) {
-  const auto stays = [&](const MeshInstance& instance) { return !moving[instance.mesh]; };
-  auto old = before.begin();
-  for (MeshInstance& instance : now) {
-    if (!stays(instance)) continue;
-    old = std::find_if(old, before.end(), stays);
-    instance.world_from_object = (old++)->world_from_object;
+void keep_places(const std::vector<char>& moving, const MeshInstances& before, MeshInstances& now) {
+  const auto find_still = [&](const MeshInstances& all, size_t i) {
+    while (i < all.size() && moving[all.mesh_of(i)]) ++i;
+    return i;
+  };
+  size_t old = find_still(before, 0);
+  for (size_t i = find_still(now, 0); i < now.size(); i = find_still(now, i + 1)) {
+    const Affine3d place = before.world_from_object(old);
+    if (now.world_from_object(i) != place) now.place(i, place);
+    old = find_still(before, old + 1);
   }
 }
 
@@ -98,10 +100,9 @@ struct GltfFile::Impl {
   template <class Wanted>
   void deform(Scene& scene, const Wanted& wanted) {
     const std::vector<Material> materials = at_their_most(scene.materials);
-    std::vector<char> seen(plan.mesh_count);
-    for (const MeshInstance& instance : scene.geometry.mesh_instances) seen[instance.mesh] = 1;
+    const std::vector<uint32_t> uses = uses_of_meshes(scene.geometry);
     for (const Deformation& how : plan.all) {
-      if (!seen[how.placed_as] || !wanted(how)) continue;
+      if (uses[how.placed_as] == 0 || !wanted(how)) continue;
       scene.geometry.meshes[how.placed_as] =
           deformed(source, deformable[how.mesh], how, skins, world_from_node, materials);
     }

@@ -4,9 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-
-#include "loaders/gltf_transform.h"
-
 namespace alhazen {
 namespace {
 
@@ -27,6 +24,37 @@ std::vector<float> values_of(const JsonRef& attributes, const char* name, const 
   return values;
 }
 
+/// The numbers of some instances, as an array of their own.
+InstanceArray read_places(const JsonRef& attributes, const GltfBuffers& buffers, std::span<const uint32_t> instances,
+                          const InstanceArray& below) {
+  InstanceArray places{.mesh = below.mesh,
+                       .node = below.node,
+                       .world_from_node = below.world_from_node,
+                       .count = uint32_t(instances.size())};
+  const auto values = [&](const char* name) { return values_of(attributes, name, buffers, instances); };
+  const std::vector<float> t = values("TRANSLATION"), q = values("ROTATION"), s = values("SCALE");
+  for (size_t i = 0; i < t.size(); i += 3) places.translations.push_back({t[i], t[i + 1], t[i + 2]});
+  for (size_t i = 0; i < q.size(); i += 4) places.rotations.push_back({q[i], q[i + 1], q[i + 2], q[i + 3]});
+  for (size_t i = 0; i < s.size(); i += 3) places.scales.push_back({s[i], s[i + 1], s[i + 2]});
+  return places;
+}
+
+/// `count`: of all that may come.
+void append_invertible(const InstanceArray& places, uint64_t count, InstanceArray& array) {
+  const auto append = [count](const auto& from, size_t k, auto& to) {
+    if (from.empty()) return;
+    to.reserve(count);
+    to.push_back(from[k]);
+  };
+  for (size_t k = 0; k < places.count; ++k) {
+    if (!is_invertible(world_from_object(places, k))) continue;
+    append(places.translations, k, array.translations);
+    append(places.rotations, k, array.rotations);
+    append(places.scales, k, array.scales);
+    ++array.count;
+  }
+}
+
 }  // namespace
 
 uint64_t instance_count(const JsonRef& r, const GltfBuffers& buffers) {
@@ -45,22 +73,16 @@ uint64_t instance_count(const JsonRef& r, const GltfBuffers& buffers) {
   return count;
 }
 
-std::vector<Affine3f> read_instances(const JsonRef& r, const GltfBuffers& buffers, uint64_t first, uint64_t count) {
+void read_instances(const JsonRef& r, const GltfBuffers& buffers, InstanceArray& array) {
+  constexpr uint64_t kAtOnce = 4096;  // their numbers take little besides the instances themselves
   const JsonRef attributes = r["attributes"];
-  std::vector<uint32_t> instances(count);
-  std::iota(instances.begin(), instances.end(), uint32_t(first));
-  const auto values = [&](const char* name) { return values_of(attributes, name, buffers, instances); };
-  const std::vector<float> t = values("TRANSLATION"), q = values("ROTATION"), s = values("SCALE");
-  std::vector<Affine3f> maps(count);
-  for (size_t i = 0; i < maps.size(); ++i) {
-    std::array<double, 4> rotation{0, 0, 0, 1};
-    if (!q.empty()) rotation = {q[4 * i], q[4 * i + 1], q[4 * i + 2], q[4 * i + 3]};
-    if (rotation == std::array<double, 4>{}) rotation[3] = 1;
-    const Vec3d scale = s.empty() ? Vec3d{1, 1, 1} : Vec3d(s[3 * i], s[3 * i + 1], s[3 * i + 2]);
-    maps[i] = Affine3f(rotate_scale(rotation, scale));
-    if (!t.empty()) maps[i].origin = {t[3 * i], t[3 * i + 1], t[3 * i + 2]};
+  const uint64_t count = instance_count(r, buffers);
+  std::vector<uint32_t> instances;
+  for (uint64_t first = 0; first < count; first += kAtOnce) {
+    instances.resize(std::min(kAtOnce, count - first));
+    std::iota(instances.begin(), instances.end(), uint32_t(first));
+    append_invertible(read_places(attributes, buffers, instances, array), count, array);
   }
-  return maps;
 }
 
 }  // namespace alhazen

@@ -1,9 +1,7 @@
 // EXT_mesh_gpu_instancing: one mesh at many places.
 #pragma once
 
-#include <vector>
-
-#include "core/transform.h"
+#include "accel/mesh_instances.h"
 #include "loaders/gltf_accessor.h"
 
 namespace alhazen {
@@ -12,9 +10,8 @@ namespace alhazen {
 /// another count than the others, or not the components that it needs.
 [[nodiscard]] uint64_t instance_count(const JsonRef& r, const GltfBuffers& buffers);
 
-/// The maps from instances [first, first + count) to their node: translation x rotation x scale. Throws LoadError for
-/// numbers that are not finite.
-[[nodiscard]] std::vector<Affine3f> read_instances(const JsonRef& r, const GltfBuffers& buffers, uint64_t first,
-                                                   uint64_t count);
+/// Adds the places of the extension object `r` to `array`, but those where the map to the world cannot be inverted.
+/// Throws LoadError for numbers that are not finite.
+void read_instances(const JsonRef& r, const GltfBuffers& buffers, InstanceArray& array);
 
 }  // namespace alhazen

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "loaders/gltf_transform.h"
+#include "core/transform.h"
 
 namespace alhazen {
 namespace {

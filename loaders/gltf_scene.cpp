@@ -83,18 +83,10 @@ class Placer {
   void place_instances(const JsonRef& e, uint32_t mesh, uint32_t node, const Affine3d& world_from_node) {
     const uint64_t count = instance_count(e, buffers_);
     if (!counted_) source_.budget->take(e, count, kInstanceBytes);
-    std::vector<MeshInstance>& placed = scene_.geometry.mesh_instances;
-    placed.reserve(placed.size() + count);
-    uint64_t left_out = 0;
-    constexpr uint64_t kAtOnce = 4096;  // their numbers take little besides the instances themselves
-    for (uint64_t first = 0; first < count; first += kAtOnce)
-      for (const Affine3f& m : read_instances(e, buffers_, first, std::min(kAtOnce, count - first))) {
-        const Affine3d map = world_from_node * Affine3d(m);
-        if (is_invertible(map))
-          placed.push_back({mesh, node, map});
-        else
-          ++left_out;
-      }
+    InstanceArray array{.mesh = mesh, .node = node, .world_from_node = world_from_node};
+    read_instances(e, buffers_, array);
+    const uint64_t left_out = count - array.count;
+    scene_.geometry.mesh_instances.append(std::move(array));
     if (left_out > 0)
       source_.warn(e.pointer(), std::to_string(left_out) + " of its " + std::to_string(count) +
                                     " instances are left out, their matrices cannot be inverted");
@@ -128,7 +120,7 @@ class Placer {
     return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, world_from_node.origin};
   }
 
-  static constexpr uint64_t kInstanceBytes = 3 * sizeof(MeshInstance);  // Embree's and its hierarchy's too
+  static constexpr uint64_t kInstanceBytes = 128;  // the hierarchy over them too, while it is made
 
   GltfSource& source_;
   const GltfBuffers& buffers_;

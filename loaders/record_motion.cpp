@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <map>
+#include <ranges>
 
 #include "accel/shape_bounds.h"
 #include "renderer/moving.h"
@@ -169,11 +170,16 @@ bool alike(const MeshPose& a, const MeshPose& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
 }
 
+struct NodeInstances {
+  size_t first, count;
+};
+
 /// Instances come in the order of their nodes.
-template <class Instance>
-std::span<const Instance> of_node(const std::vector<Instance>& all, uint32_t node) {
-  const auto first = std::ranges::lower_bound(all, node, {}, &Instance::node);
-  return {first, std::ranges::upper_bound(first, all.end(), node, {}, &Instance::node)};
+template <class Instances>
+NodeInstances of_node(const Instances& all, uint32_t node) {
+  const auto numbers = std::views::iota(size_t{0}, all.size());
+  const auto found = std::ranges::equal_range(numbers, node, {}, [&](size_t i) { return all[i].node; });
+  return {size_t(found.begin() - numbers.begin()), size_t(found.size())};
 }
 
 class Recorder {
@@ -226,15 +232,15 @@ class Recorder {
     return at->second;
   }
 
-  template <class Instance, class Box>
-  void list_objects(const std::vector<Instance>& placed, size_t first_object, const Box& box) {
+  template <class Instances, class Box>
+  void list_objects(const Instances& placed, size_t first_object, const Box& box) {
     for (size_t i = 0; i < placed.size(); ++i) {
-      const uint32_t node = placed[i].node;
-      if (!file_.moving_nodes()[node]) continue;
-      const auto all = of_node(placed, node);
-      const Bounds3d object = box(placed[i]);
-      const PlaceRuler ruler{object, size_of(transform_bounds(placed[i].world_from_object, object))};
-      objects_.push_back({{uint32_t(first_object + i), ruler}, node, size_t(&placed[i] - all.data()), all.size()});
+      const auto& instance = placed[i];
+      if (!file_.moving_nodes()[instance.node]) continue;
+      const auto [first, count] = of_node(placed, instance.node);
+      const Bounds3d object = box(instance);
+      const PlaceRuler ruler{object, size_of(transform_bounds(instance.world_from_object, object))};
+      objects_.push_back({{uint32_t(first_object + i), ruler}, instance.node, i - first, count});
     }
   }
 
@@ -260,9 +266,9 @@ class Recorder {
   // What it is at the time of the scene; none where it is not shown, or is of other vertices.
   [[nodiscard]] std::optional<Affine3d> pose_now(const ObjectRecording& recording) const {
     const auto place = [&](const auto& placed) -> std::optional<Affine3d> {
-      const auto all = of_node(placed, recording.node);
-      if (all.size() != recording.count) return std::nullopt;
-      return all[recording.ordinal].world_from_object;
+      const auto [first, count] = of_node(placed, recording.node);
+      if (count != recording.count) return std::nullopt;
+      return placed[first + recording.ordinal].world_from_object;
     };
     const Geometry& geometry = scene_.geometry;
     return recording.index < mesh_objects_ ? place(geometry.mesh_instances) : place(geometry.shape_instances);

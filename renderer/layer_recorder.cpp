@@ -71,7 +71,7 @@ std::string node_name(const Scene& scene, uint32_t node) {
 /// Shapes have no names.
 std::string mesh_name(const Scene& scene, uint32_t object) {
   if (is_shape(scene.geometry, object)) return "shape " + std::to_string(shape_instance(scene.geometry, object).shape);
-  const uint32_t mesh = scene.geometry.mesh_instances[object].mesh;
+  const uint32_t mesh = scene.geometry.mesh_instances.mesh_of(object);
   return name_or_index(scene.geometry.meshes[mesh].name, "mesh", mesh);
 }
 

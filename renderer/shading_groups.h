@@ -27,7 +27,7 @@ class ShadingGroups {
   [[nodiscard]] const ShadingGroup& operator[](size_t group) const { return groups_[group]; }
   [[nodiscard]] uint32_t of(const Geometry& geometry, uint32_t object, uint32_t part) const {
     return is_shape(geometry, object) ? group_of_shape_[object - geometry.mesh_instances.size()]
-                                      : group_of_part_[first_part_[geometry.mesh_instances[object].mesh] + part];
+                                      : group_of_part_[first_part_[geometry.mesh_instances.mesh_of(object)] + part];
   }
 
  private:

@@ -149,9 +149,9 @@ Corners<float> corners_of(const PosedPart& posed, const TriangleMesh& part, cons
 
 SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v, float time) {
   const Geometry& geometry = scene.geometry;
-  const MeshInstance& instance = geometry.mesh_instances[ids.object];
-  const TriangleMesh& part = geometry.meshes[instance.mesh].parts[ids.part];
-  const PosedPart posed(part, ids.part, track_of_mesh(geometry, instance.mesh), time);
+  const uint32_t mesh = geometry.mesh_instances.mesh_of(ids.object);
+  const TriangleMesh& part = geometry.meshes[mesh].parts[ids.part];
+  const PosedPart posed(part, ids.part, track_of_mesh(geometry, mesh), time);
   const Affine3d m = world_from_object(geometry, ids.object, time);
   const Affine3d* map = m == Affine3d{} ? nullptr : &m;
   const Attributes has = attributes(part);
@@ -161,7 +161,7 @@ SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v,
   interpolate_attributes(corners, has, u, v, s);
   measure_uvs(corners, has, map, s);
   // Rounding of the position, of an instance's ray transform, and of the traversal's plane; of both poses in motion.
-  const bool moves = track_of_object(geometry, ids.object) || track_of_mesh(geometry, instance.mesh);
+  const bool moves = track_of_object(geometry, ids.object) || track_of_mesh(geometry, mesh);
   place(corners, has, u, v, map, moves ? 64.0 : map ? 16.0 : 4.0, s);
   return s;
 }
@@ -288,7 +288,7 @@ SurfaceIds surface_ids(const Scene& scene, const HitIds& hit) noexcept {
   const auto of_file = [&](uint32_t material) { return material + 1 == scene.materials.size() ? kNone : material; };
   const uint32_t node = node_of(geometry, hit.object);
   if (is_shape(geometry, hit.object)) return {node, 0, of_file(shape_instance(geometry, hit.object).material)};
-  const TriangleMesh& part = geometry.meshes[geometry.mesh_instances[hit.object].mesh].parts[hit.part];
+  const TriangleMesh& part = geometry.meshes[geometry.mesh_instances.mesh_of(hit.object)].parts[hit.part];
   return {node, part.first_primitive + polygon_of(part, hit.primitive), of_file(part.material)};
 }
 
@@ -321,7 +321,7 @@ class LaneParts {
   LaneParts(const Scene& scene, const LaneHits& hits) {
     const Geometry& geometry = scene.geometry;
     const auto part = [&](size_t k) {
-      return &geometry.meshes[geometry.mesh_instances[hits.ids[k].object].mesh].parts[hits.ids[k].part];
+      return &geometry.meshes[geometry.mesh_instances.mesh_of(hits.ids[k].object)].parts[hits.ids[k].part];
     };
     one_part_ = true;
     for (size_t k = 0; k < kWidthOf<F>; ++k) parts_[k] = part(k), one_part_ = one_part_ && parts_[k] == parts_[0];
@@ -395,12 +395,11 @@ Corners<F> lane_corners(const LaneParts& parts, const Attributes& has, const Lan
 }
 
 Affine3<D> lane_maps(const Geometry& geometry, const LaneHits& hits) {
-  const auto map = [&](size_t k) -> const Affine3d& {
-    return geometry.mesh_instances[hits.ids[k].object].world_from_object;
-  };
+  std::array<Affine3d, kWidthOf<F>> maps;
+  for (size_t k = 0; k < kWidthOf<F>; ++k) maps[k] = geometry.mesh_instances.world_from_object(hits.ids[k].object);
   const auto column = [&](Vec3d Affine3d::*of) {
     Vec3Array<D> all;
-    for (size_t k = 0; k < kWidthOf<F>; ++k) all.set(k, map(k).*of);
+    for (size_t k = 0; k < kWidthOf<F>; ++k) all.set(k, maps[k].*of);
     return all.load();
   };
   return {column(&Affine3d::x), column(&Affine3d::y), column(&Affine3d::z), column(&Affine3d::origin)};
@@ -433,13 +432,13 @@ LaneTriangles lane_triangles(const Scene& scene, const LaneHits& hits, const Att
   }
   all.corners = lane_corners(LaneParts(scene, hits), has, triangles);
   const auto is_in_world = [&](const HitIds& ids) {
-    return geometry.mesh_instances[ids.object].world_from_object == Affine3d{};
+    return geometry.mesh_instances.world_from_object(ids.object) == Affine3d{};
   };
   if (one_object) {
     all.all_in_world = is_in_world(hits.ids[0]);
     all.roundings = D(all.all_in_world ? kInWorld : kPlaced);
     if (!all.all_in_world)
-      all.world_from_object = broadcast(geometry.mesh_instances[hits.ids[0].object].world_from_object);
+      all.world_from_object = broadcast(geometry.mesh_instances.world_from_object(hits.ids[0].object));
     return all;
   }
   LaneArray<D> roundings;
@@ -524,7 +523,7 @@ float mean_curvature(const Scene& scene, const HitIds& ids, const SurfacePoint& 
                      float time) noexcept {
   const Geometry& geometry = scene.geometry;
   if (is_shape(geometry, ids.object)) return finite_or_0(shape_curvature(scene, ids, point, width, time));
-  const uint32_t mesh = geometry.mesh_instances[ids.object].mesh;
+  const uint32_t mesh = geometry.mesh_instances.mesh_of(ids.object);
   const TriangleMesh& part = geometry.meshes[mesh].parts[ids.part];
   if (part.normals.empty()) return 0;
   const PosedPart posed(part, ids.part, track_of_mesh(geometry, mesh), time);
@@ -562,8 +561,8 @@ SurfacePoint surface_point(const Scene& scene, const Crossing& crossing) noexcep
   if (is_shape(scene.geometry, crossing.object))
     return shape_point(scene, crossing.object, int(crossing.part),
                        shape_instance(scene.geometry, crossing.object).world_from_object, crossing.p_object);
-  const MeshInstance& instance = scene.geometry.mesh_instances[crossing.object];
-  const TriangleMesh& part = scene.geometry.meshes[instance.mesh].parts[crossing.part];
+  const uint32_t mesh = scene.geometry.mesh_instances.mesh_of(crossing.object);
+  const TriangleMesh& part = scene.geometry.meshes[mesh].parts[crossing.part];
   SurfacePoint s;
   s.material = part.material;
   Attributes has = attributes(part);

@@ -6,7 +6,7 @@
 
 #include "gltf_builder.h"
 #include "loaders/deform.h"
-#include "loaders/gltf_transform.h"
+#include "core/transform.h"
 
 namespace alhazen {
 namespace {
@@ -166,7 +166,7 @@ GltfBuilder skinned_triangle() {
 
 /// Where the mesh's first vertex is seen.
 Vec3d first_vertex(const Scene& scene) {
-  const MeshInstance& instance = scene.geometry.mesh_instances.at(0);
+  const MeshInstance instance = scene.geometry.mesh_instances[0];
   return transform_point(instance.world_from_object,
                          Vec3d(scene.geometry.meshes[instance.mesh].parts.at(0).positions[0]));
 }
@@ -260,7 +260,7 @@ GltfBuilder morphing_triangle() {
 
 float lift(const GltfBuilder& b, size_t instance = 0) {
   const Scene scene = load(b).scene();
-  return scene.geometry.meshes[scene.geometry.mesh_instances.at(instance).mesh].parts.at(0).positions[1].z;
+  return scene.geometry.meshes[scene.geometry.mesh_instances.mesh_of(instance)].parts.at(0).positions[1].z;
 }
 
 TEST(GltfMorph, TheNodesWeightsStandBeforeTheMeshs) {

@@ -395,7 +395,7 @@ TEST(GltfNode, TransformsAreTranslationRotationScaleThroughTheHierarchy) {
     }
     const Loaded loaded = load(b);
     ASSERT_EQ(loaded.scene().geometry.mesh_instances.size(), 1u);
-    const MeshInstance& instance = loaded.scene().geometry.mesh_instances[0];
+    const MeshInstance instance = loaded.scene().geometry.mesh_instances[0];
     EXPECT_EQ(instance.node, 2u);
     Vec3d p{u(rng), u(rng), u(rng)};
     const Vec3d found = transform_point(instance.world_from_object, p);
@@ -408,7 +408,7 @@ TEST(GltfNode, MatricesAreReadColumnByColumn) {
   GltfBuilder b;
   b.mesh({{"attributes", {{"POSITION", b.vec3(kTriangle)}}}});
   b.root["nodes"][0]["matrix"] = {1, 2, 3, 0, 4, 5, -6, 0, 7, 8, 10, 0, 11, 12, 13, 1};
-  const Affine3d m = load(b).scene().geometry.mesh_instances.at(0).world_from_object;
+  const Affine3d m = load(b).scene().geometry.mesh_instances[0].world_from_object;
   EXPECT_EQ(m, (Affine3d{{1, 2, 3}, {4, 5, -6}, {7, 8, 10}, {11, 12, 13}}));
 }
 
@@ -423,7 +423,7 @@ GltfBuilder three_meshes() {
 std::vector<uint32_t> shown_nodes(const json& document) {
   std::vector<uint32_t> nodes;
   const Loaded loaded = load_json(document);
-  for (const MeshInstance& instance : loaded.scene().geometry.mesh_instances) nodes.push_back(instance.node);
+  for (const MeshInstance instance : loaded.scene().geometry.mesh_instances) nodes.push_back(instance.node);
   return nodes;
 }
 

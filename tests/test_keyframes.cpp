@@ -155,7 +155,7 @@ Loaded load_at(const GltfBuilder& b, const TimeChoice& time) {
 }
 
 double x_at(const GltfBuilder& b, const TimeChoice& choice) {
-  return load_at(b, choice).scene().geometry.mesh_instances.at(0).world_from_object.origin.x;
+  return load_at(b, choice).scene().geometry.mesh_instances[0].world_from_object.origin.x;
 }
 
 std::string error_at(const GltfBuilder& b, const TimeChoice& choice = play("0")) {
@@ -194,7 +194,7 @@ TEST(GltfAnimation, ValuesMayBeNormalisedIntegers) {
   AnimatedFile f = moving();
   f.channel()["target"]["path"] = "rotation";
   f.sampler()["output"] = f.b.accessor(std::vector<int8_t>{0, 0, 0, 127, 0, 0, 127, 0}, "VEC4", 5120, 2, true);
-  const Affine3d m = load_at(f.b, play("", 1)).scene().geometry.mesh_instances.at(0).world_from_object;
+  const Affine3d m = load_at(f.b, play("", 1)).scene().geometry.mesh_instances[0].world_from_object;
   EXPECT_NEAR(m.x.y, 1, 1e-12);  // half of a half turn about z
 }
 

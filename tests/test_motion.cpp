@@ -87,7 +87,7 @@ Geometry geometry_at(const Geometry& moving, float time) {
   Geometry still = moving;
   still.motion = {};
   for (uint32_t i = 0; i < still.mesh_instances.size(); ++i)
-    still.mesh_instances[i].world_from_object = world_from_object(moving, i, time);
+    still.mesh_instances.place(i, world_from_object(moving, i, time));
   for (uint32_t i = 0; i < still.shape_instances.size(); ++i)
     still.shape_instances[i].world_from_object =
         world_from_object(moving, uint32_t(still.mesh_instances.size()) + i, time);

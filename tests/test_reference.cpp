@@ -225,7 +225,7 @@ TEST(ReferenceAccelerators, CountTheirTests) {
   const Subject subject(scene, camera);
   const RayWave rays = camera_rays(camera, 40, 30);
   uint64_t primitives = scene.geometry.shape_instances.size();
-  for (const MeshInstance& instance : scene.geometry.mesh_instances)
+  for (const MeshInstance instance : scene.geometry.mesh_instances)
     for (const TriangleMesh& part : scene.geometry.meshes[instance.mesh].parts) primitives += part.triangles.size();
   const uint64_t objects = scene.geometry.mesh_instances.size() + scene.geometry.shape_instances.size();
   const TestCounts brute = closest(subject.rungs[0], rays).counts, boxes = closest(subject.rungs[1], rays).counts,

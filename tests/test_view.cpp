@@ -20,7 +20,7 @@ Extent extent_in_picture(const Geometry& geometry, const Camera& camera, double 
   const Affine3d& m = camera.world_from_camera;
   const double tan_y = std::tan(camera.yfov / 2);
   Extent extent;
-  for (const MeshInstance& placed : geometry.mesh_instances)
+  for (const MeshInstance placed : geometry.mesh_instances)
     for (const TriangleMesh& part : geometry.meshes[placed.mesh].parts)
       for (const auto& triangle : part.triangles)
         for (const uint32_t i : triangle) {

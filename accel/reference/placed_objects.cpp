@@ -24,17 +24,17 @@ PlacedObjects::PlacedObjects(const Geometry& geometry, const SurfaceFilter& filt
     object_from_world_.push_back(line_map(instance.world_from_object));
 }
 
-const Affine3d& PlacedObjects::world_from_object(uint32_t object) const {
+Affine3d PlacedObjects::world_from_object(uint32_t object) const {
   return is_shape(geometry_, object) ? shape_instance(geometry_, object).world_from_object
-                                     : geometry_.mesh_instances[object].world_from_object;
+                                     : geometry_.mesh_instances.world_from_object(object);
 }
 
 Bounds3d PlacedObjects::bounds(uint32_t object) const {
-  const Affine3d& m = world_from_object(object);
+  const Affine3d m = world_from_object(object);
   const Bounds3d box = is_shape(geometry_, object)
                            ? std::visit([](const auto& shape) { return alhazen::bounds(shape); },
                                         geometry_.shapes[shape_instance(geometry_, object).shape])
-                           : bounds_of(geometry_.meshes[geometry_.mesh_instances[object].mesh]);
+                           : bounds_of(geometry_.meshes[geometry_.mesh_instances.mesh_of(object)]);
   if (is_empty(box)) return box;
   const Bounds3d world = transform_bounds(m, box);
   const Vec3d reach = max(abs(box.lower), abs(box.upper));
@@ -44,7 +44,7 @@ Bounds3d PlacedObjects::bounds(uint32_t object) const {
 
 uint32_t PlacedObjects::material_of(const Crossing& crossing) const {
   if (is_shape(geometry_, crossing.object)) return shape_instance(geometry_, crossing.object).material;
-  return geometry_.meshes[geometry_.mesh_instances[crossing.object].mesh].parts[crossing.part].material;
+  return geometry_.meshes[geometry_.mesh_instances.mesh_of(crossing.object)].parts[crossing.part].material;
 }
 
 Opacity PlacedObjects::opacity(uint32_t material) const {
@@ -72,7 +72,7 @@ void PlacedObjects::append_shape_hits(uint32_t object, const Rayf& ray, std::vec
 
 void PlacedObjects::append_mesh_hits(uint32_t object, const Rayf& ray, std::vector<SurfaceHit>& hits,
                                      TestCounts& counts) const {
-  const MeshInstance& instance = geometry_.mesh_instances[object];
+  const MeshInstance instance = geometry_.mesh_instances[object];
   const LineMap<double>& map = object_from_world_[object];
   const ObjectLine<double> line = object_line(map, Vec3d(ray.origin), Vec3d(ray.direction));
   const Mesh& mesh = geometry_.meshes[instance.mesh];

@@ -39,7 +39,7 @@ class PlacedObjects {
   [[nodiscard]] Rgb transmittance(const Crossing& crossing) const;
 
  private:
-  [[nodiscard]] const Affine3d& world_from_object(uint32_t object) const;
+  [[nodiscard]] Affine3d world_from_object(uint32_t object) const;
   [[nodiscard]] Opacity opacity(uint32_t material) const;
   [[nodiscard]] uint32_t material_of(const Crossing& crossing) const;
   void append_if_present(const SurfaceHit& hit, std::vector<SurfaceHit>& hits) const;
