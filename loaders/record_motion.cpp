@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <map>
-#include <ranges>
 
 #include "accel/shape_bounds.h"
 #include "renderer/moving.h"
@@ -177,9 +176,19 @@ struct NodeInstances {
 /// Instances come in the order of their nodes.
 template <class Instances>
 NodeInstances of_node(const Instances& all, uint32_t node) {
-  const auto numbers = std::views::iota(size_t{0}, all.size());
-  const auto found = std::ranges::equal_range(numbers, node, {}, [&](size_t i) { return all[i].node; });
-  return {size_t(found.begin() - numbers.begin()), size_t(found.size())};
+  const auto first_from = [&](uint32_t least) {
+    size_t first = 0, end = all.size();
+    while (first < end) {
+      const size_t middle = first + (end - first) / 2;
+      if (all[middle].node < least)
+        first = middle + 1;
+      else
+        end = middle;
+    }
+    return first;
+  };
+  const size_t first = first_from(node);
+  return {first, first_from(node + 1) - first};
 }
 
 class Recorder {
