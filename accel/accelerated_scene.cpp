@@ -17,12 +17,14 @@
 #include "accel/embree.h"
 #include "accel/instance_geometry.h"
 #include "accel/moving_shapes.h"
+#include "accel/packet.h"
 #include "accel/posed.h"
 #include "accel/ray_rows.h"
 #include "accel/shape_geometry.h"
 #include "accel/triangle_geometry.h"
 #include "accel/wave_query.h"
 #include "core/error.h"
+#include "core/lane_memory.h"
 
 namespace alhazen {
 namespace {
@@ -52,7 +54,7 @@ struct AcceleratedScene::Impl {
   std::vector<std::unique_ptr<InstanceGroup>> instance_groups;
   std::vector<std::unique_ptr<TriangleGroup>> triangle_groups;  // of ours
   std::vector<TopEntry> top;
-  std::vector<uint32_t> object_of_top;  // by number in `top`
+  std::vector<uint32_t> object_of_top, part_of_top;  // by number in `top`, and one more, so that there is one
   std::vector<RTCScene> mesh_scenes;
   RTCDevice device = nullptr;
   std::array<RTCScene, 2> scenes{};  // what stands still, and what moves from frame to frame; null where there is none
@@ -212,10 +214,36 @@ struct AcceleratedScene::Traversal {
     }
   }
 
+  /// What was hit, as the scene numbers it: for all lanes at once, but for shapes one by one.
+  template <int width>
+  [[gnu::flatten]] static void store_ids(const Impl& impl, const typename embree::Packets<width>::RayHit& packet,
+                                         size_t first, HitWave& hits) {
+    using U = LanesOf<uint32_t, width>;
+    constexpr auto anywhere = std::experimental::element_aligned;
+    const U instance(packet.hit.instID[0], anywhere), geometry(packet.hit.geomID, anywhere),
+        primitive(packet.hit.primID, anywhere), none(RTC_INVALID_GEOMETRY_ID);
+    const auto hit = geometry != none;
+    const auto placed = instance != none;
+    const U entry = select(hit, select(placed, instance, geometry), U(0));
+    const auto grouped = (entry & U(kInGroup)) != U(0);
+    const U known = select(grouped, U(0), entry);
+    const U object = select(grouped, entry & U(~kInGroup), load_at<U>(address_of(impl.object_of_top.data(), known)));
+    select(hit, object, none).copy_to(&hits.object[first], anywhere);
+    select(placed, geometry, load_at<U>(address_of(impl.part_of_top.data(), known)))
+        .copy_to(&hits.part[first], anywhere);
+    primitive.copy_to(&hits.primitive[first], anywhere);
+    for_each_bit(lane_bits(hit && object == none), [&](unsigned i) {
+      const Impl::Ids ids =
+          impl.ids(packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i], packet.hit.u[i]);
+      const size_t k = first + i;
+      hits.object[k] = ids.object, hits.part[k] = ids.part, hits.primitive[k] = ids.primitive;
+    });
+  }
+
   template <int width>
   static void intersect_packets(const Impl& impl, const RayWave& wave, Coherence coherence, HitWave& hits) {
     for_each_packet<width>(
-        impl, wave, coherence, Joining::any, nullptr, [&](Query& query, size_t first, int rays, int* valid) {
+        impl, wave, coherence, Joining::any, nullptr, [&](Query& query, size_t first, int, int* valid) {
           alignas(64) typename embree::Packets<width>::RayHit packet;
           for (int i = 0; i < width; ++i) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
           load_rays(wave, first, width, packet.ray);
@@ -224,14 +252,7 @@ struct AcceleratedScene::Traversal {
           constexpr size_t kBytes = size_t(width) * sizeof(float);
           std::memcpy(&hits.t[first], packet.ray.tfar, kBytes);
           std::memcpy(&hits.u[first], packet.hit.u, kBytes), std::memcpy(&hits.v[first], packet.hit.v, kBytes);
-          for (int i = 0; i < rays; ++i) {
-            const size_t k = first + size_t(i);
-            hits.object[k] = kNone;
-            if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-            const Impl::Ids ids =
-                impl.ids(packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i], packet.hit.u[i]);
-            hits.object[k] = ids.object, hits.part[k] = ids.part, hits.primitive[k] = ids.primitive;
-          }
+          store_ids<width>(impl, packet, first, hits);
         });
   }
 
@@ -501,8 +522,9 @@ struct AcceleratedScene::Traversal {
   static void build_moving(Impl& impl) {
     impl.scenes[1] =
         impl.options.moving.meshes.empty() && impl.options.moving.nodes.empty() ? nullptr : build(impl, true);
-    impl.object_of_top.clear();
-    for (const TopEntry& entry : impl.top) impl.object_of_top.push_back(entry.object);
+    impl.object_of_top.assign(impl.top.size() + 1, kNone), impl.part_of_top.assign(impl.top.size() + 1, 0);
+    for (size_t i = 0; i < impl.top.size(); ++i)
+      impl.object_of_top[i] = impl.top[i].object, impl.part_of_top[i] = impl.top[i].part;
     if (const RTCError error = rtcGetDeviceError(impl.device); error != RTC_ERROR_NONE)
       throw Error("building the hierarchy: Embree error " + std::to_string(int(error)), ExitStatus::internal);
   }

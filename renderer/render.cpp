@@ -58,29 +58,39 @@ void store(const Vec3<ShadingLanes>& v, Vec3Lanes& rows, size_t first) {
   v.x.copy_to(&rows.x[first], kAligned), v.y.copy_to(&rows.y[first], kAligned), v.z.copy_to(&rows.z[first], kAligned);
 }
 
-/// The camera rays of one sample of every pixel.
+/// The camera rays of one sample of every pixel, in the order of `arena.pixels`.
+void generate_camera_rays(const Camera& camera, const RenderOptions& options, const Cell& cell, uint32_t sample,
+                          WaveArena& arena) {
+  using F = ShadingLanes;
+  using I = IntOf<F>;
+  arena.pixels.list(cell);
+  RayWave& rays = arena.pending.rays;
+  rays.resize(arena.pixels.size());
+  const Film film(camera, options.width, options.height);
+  for (size_t first = 0; first < rays.size(); first += kWidthOf<F>) {
+    const auto from = [&](const Lanes<int32_t>& row, int corner) {
+      return I(&row[first], std::experimental::element_aligned) + I(corner);
+    };
+    const Vec2<DoubleOf<F>> p =
+        film_point<F>(from(arena.pixels.x, cell.x0), from(arena.pixels.y, cell.y0), sample, options.samples);
+    const FilmRay<F> through = film_ray<F>(film, p.x, p.y);
+    store(through.origin, rays.origin, first), store(through.direction, rays.direction, first);
+  }
+  std::fill_n(rays.t_min.data(), rays.size(), Rayf{}.t_min);
+  std::fill_n(rays.t_max.data(), rays.size(), Rayf{}.t_max);
+}
+
+/// The same on their way to their pixels.
 void push_camera_rays(const Camera& camera, const RenderOptions& options, const Cell& cell, uint32_t sample,
                       WaveArena& arena) {
-  using F = ShadingLanes;
-  constexpr size_t kLanes = kWidthOf<F>;
-  PathWave& wave = arena.pending;
-  wave.resize(size_t(cell.x1 - cell.x0) * size_t(cell.y1 - cell.y0));
-  const Film film(camera, options.width, options.height);
-  const Cone cone = camera_cone(camera, options.height, options.samples);
-  LaneArray<IntOf<F>> xs{}, ys{};
-  size_t i = 0;
-  for_each_pixel(cell, [&](int x, int y) {
-    xs[i % kLanes] = x, ys[i % kLanes] = y;
-    wave.paths[i] = {.pixel = uint32_t((y - cell.y0) * kCellSize + (x - cell.x0)), .cone = cone};
-    ++i;
-    if (i % kLanes != 0 && i != wave.size()) return;
-    const Vec2<DoubleOf<F>> p = film_point<F>(xs.load(), ys.load(), sample, options.samples);
-    const FilmRay<F> rays = film_ray<F>(film, p.x, p.y);
-    const size_t first = (i - 1) / kLanes * kLanes;
-    store(rays.origin, wave.rays.origin, first), store(rays.direction, wave.rays.direction, first);
-  });
-  std::fill_n(wave.rays.t_min.data(), wave.size(), Rayf{}.t_min);
-  std::fill_n(wave.rays.t_max.data(), wave.size(), Rayf{}.t_max);
+  generate_camera_rays(camera, options, cell, sample, arena);
+  const CellPixels& pixels = arena.pixels;
+  arena.pending.paths.resize(pixels.size());
+  Path path{.cone = camera_cone(camera, options.height, options.samples)};
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    path.pixel = uint32_t(pixels.y[i] * kCellSize + pixels.x[i]);
+    arena.pending.paths[i] = path;
+  }
 }
 
 /// The same while the shutter is open: each at a time of its own, of a camera that may move.
@@ -88,17 +98,15 @@ void push_moving_camera_rays(const Camera& camera, const RenderOptions& options,
                              WaveArena& arena) {
   push_camera_rays(camera, options, cell, sample, arena);
   arena.time_of_pixel.resize(size_t(kCellSize) * kCellSize);
-  size_t i = 0;
-  for_each_pixel(cell, [&](int x, int y) {
+  for (size_t i = 0; i < arena.pixels.size(); ++i) {
+    const int x = cell.x0 + arena.pixels.x[i], y = cell.y0 + arena.pixels.y[i];
     float& time = arena.time_of_pixel[arena.pending.paths[i].pixel];
     time = third_sobol_owen(sample, seed_of(uint32_t(x), uint32_t(y)));
-    if (!camera.track.empty()) {
-      const Vec2d p = film_point<float>(x, y, sample, options.samples);
-      const Film film_then(at_time(camera.track, time), options.width, options.height);
-      arena.pending.rays.set(i, camera_ray(film_then, p.x, p.y));
-    }
-    ++i;
-  });
+    if (camera.track.empty()) continue;
+    const Vec2d p = film_point<float>(x, y, sample, options.samples);
+    const Film film_then(at_time(camera.track, time), options.width, options.height);
+    arena.pending.rays.set(i, camera_ray(film_then, p.x, p.y));
+  }
 }
 
 struct CellWorker {
@@ -133,19 +141,22 @@ struct CellWorker {
 
   void signature(const Cell& cell, WaveArena& arena) const {
     arena.clock.enter(Phase::generation);
-    push_camera_rays(camera, options, cell, 0, arena);
-    if (arena.log) arena.log->push_back(logged(WaveKind::camera, arena.pending.rays));
+    generate_camera_rays(camera, options, cell, 0, arena);
+    const RayWave& rays = arena.pending.rays;
+    if (arena.log) arena.log->push_back(logged(WaveKind::camera, rays));
     arena.clock.enter(Phase::traversal);
-    accelerated.intersect(arena.pending.rays, Coherence::coherent, arena.hits);
+    accelerated.intersect(rays, Coherence::coherent, arena.hits);
     arena.clock.enter(Phase::film);
-    for (size_t i = 0; i < arena.pending.size(); ++i) {
+    SurfaceIdReader ids_of(scene);
+    const size_t row = size_t(result.ids.width) * result.ids.channels.size();
+    uint32_t* const corner = result.ids.at(cell.x0 - x0, cell.y0 - y0);
+    for (size_t i = 0; i < rays.size(); ++i) {
       if (arena.hits.object[i] == kNone) continue;
-      const HitIds hit{arena.hits.object[i], arena.hits.part[i], arena.hits.primitive[i]};
-      const SurfaceIds ids = surface_ids(scene, hit);
-      uint32_t* out = pixel_at(result.ids, cell, arena.pending.paths[i].pixel);
+      const SurfaceIds ids = ids_of({arena.hits.object[i], arena.hits.part[i], arena.hits.primitive[i]});
+      uint32_t* out = corner + size_t(arena.pixels.y[i]) * row + size_t(arena.pixels.x[i]) * 3;
       out[0] = ids.node, out[1] = ids.primitive, out[2] = ids.material;
     }
-    control.camera_rays += arena.pending.size();
+    control.camera_rays += rays.size();
   }
 
   [[nodiscard]] bool whitted_with_layers(const Cell& cell, WaveArena& arena) const {

@@ -282,15 +282,23 @@ class ShapeSurroundings {
 
 }  // namespace
 
-SurfaceIds surface_ids(const Scene& scene, const HitIds& hit) noexcept {
-  const Geometry& geometry = scene.geometry;
+void SurfaceIdReader::look_up(const HitIds& hit) noexcept {
+  const Geometry& geometry = scene_.geometry;
   // The default material is the last one, and none of the file's.
-  const auto of_file = [&](uint32_t material) { return material + 1 == scene.materials.size() ? kNone : material; };
-  const uint32_t node = node_of(geometry, hit.object);
-  if (is_shape(geometry, hit.object)) return {node, 0, of_file(shape_instance(geometry, hit.object).material)};
+  const auto of_file = [&](uint32_t material) { return material + 1 == scene_.materials.size() ? kNone : material; };
+  object_ = hit.object, part_ = hit.part;
+  node_ = node_of(geometry, hit.object);
+  first_primitive_ = 0, polygon_of_triangle_ = nullptr;
+  if (is_shape(geometry, hit.object)) {
+    material_ = of_file(shape_instance(geometry, hit.object).material);
+    return;
+  }
   const TriangleMesh& part = geometry.meshes[geometry.mesh_instances.mesh_of(hit.object)].parts[hit.part];
-  return {node, part.first_primitive + polygon_of(part, hit.primitive), of_file(part.material)};
+  material_ = of_file(part.material), first_primitive_ = part.first_primitive;
+  if (!part.polygon_of_triangle.empty()) polygon_of_triangle_ = part.polygon_of_triangle.data();
 }
+
+SurfaceIds surface_ids(const Scene& scene, const HitIds& hit) noexcept { return SurfaceIdReader(scene)(hit); }
 
 namespace {
 

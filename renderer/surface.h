@@ -44,6 +44,26 @@ struct SurfaceIds {
 };
 [[nodiscard]] SurfaceIds surface_ids(const Scene& scene, const HitIds& hit) noexcept;
 
+/// The same for hit after hit, many of which are on the part that was hit before.
+class SurfaceIdReader {
+ public:
+  explicit SurfaceIdReader(const Scene& scene) : scene_(scene) {}
+
+  [[nodiscard]] SurfaceIds operator()(const HitIds& hit) noexcept {
+    if (hit.object != object_ || hit.part != part_) look_up(hit);
+    return {node_, first_primitive_ + (polygon_of_triangle_ ? polygon_of_triangle_[hit.primitive] : hit.primitive),
+            material_};
+  }
+
+ private:
+  void look_up(const HitIds& hit) noexcept;
+
+  const Scene& scene_;
+  uint32_t object_ = kNone, part_ = 0;  // of the hit before
+  uint32_t node_ = 0, material_ = 0, first_primitive_ = 0;
+  const uint32_t* polygon_of_triangle_ = nullptr;  // null: a polygon each
+};
+
 /// The surface where `ray_world` hits at t, with barycentric u and v for triangles, at that time of the shutter.
 [[nodiscard]] SurfacePoint surface_point(const Scene& scene, const Rayf& ray_world, const HitIds& ids, float t, float u,
                                          float v, float time = 0) noexcept;

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "renderer/camera_cell.h"
 #include "renderer/camera_ray.h"
 #include "renderer/lane_shading.h"
 #include "renderer/media.h"
@@ -54,6 +55,7 @@ struct ShadowWave {
 
 /// Memory of one thread, reused from cell to cell.
 struct WaveArena {
+  CellPixels pixels;
   PathWave current, pending;
   HitWave hits;
   std::vector<ShadowWave> shadow_by_light;
