@@ -243,7 +243,7 @@ std::vector<Shape> ShapeReader::read_all() {
 Check shape_description() { return check_shape; }
 
 std::vector<Shape> read_shapes(const JsonRef& extension, LoadBudget& budget) {
-  budget.take(extension["shapes"], extension["shapes"].value().size(), kShapeBytes);
+  if (const auto shapes = extension.find("shapes")) budget.take(*shapes, shapes->value().size(), kShapeBytes);
   return ShapeReader(extension, budget).read_all();
 }
 

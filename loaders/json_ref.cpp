@@ -29,7 +29,9 @@ void JsonRef::fail(const std::string& reason) const { throw LoadError(document_-
 void JsonRef::expected(const std::string& what) const { fail("expected " + what + ", found " + excerpt(*value_)); }
 
 JsonRef JsonRef::operator[](const std::string& key) const {
-  return {*document_, value_->at(key), pointer_ + "/" + escaped(key)};
+  const auto at = value_->find(key);
+  if (at == value_->end()) fail("`" + key + "` is missing");
+  return {*document_, *at, pointer_ + "/" + escaped(key)};
 }
 JsonRef JsonRef::operator[](size_t i) const { return {*document_, value_->at(i), pointer_ + "/" + std::to_string(i)}; }
 

@@ -32,7 +32,7 @@ class JsonRef {
   [[nodiscard]] std::string place() const;
 
   [[nodiscard]] bool has(const std::string& key) const { return value_->contains(key); }
-  [[nodiscard]] JsonRef operator[](const std::string& key) const;  // which the object has
+  [[nodiscard]] JsonRef operator[](const std::string& key) const;  // LoadError if the object has none
   [[nodiscard]] JsonRef operator[](size_t i) const;                // which the array has
   [[nodiscard]] std::optional<JsonRef> find(const std::string& key) const;
   [[nodiscard]] std::optional<JsonRef> extension(const std::string& name) const;

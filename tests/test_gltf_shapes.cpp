@@ -190,6 +190,14 @@ TEST(GltfShapes, CompositesHaveNoCyclesAndDoNotExplode) {
   EXPECT_TRUE(error_of(with_shapes(chain)).ends_with("composites are nested more than 128 deep"));
 }
 
+TEST(GltfShapes, MayBeNone) {
+  json document = with_shapes(json::array());
+  document.erase("nodes");
+  EXPECT_TRUE(load_json(document).scene().geometry.shapes.empty());
+  document["extensions"]["ALHAZEN_shapes"] = json::object();
+  EXPECT_TRUE(load_json(document).scene().geometry.shapes.empty());
+}
+
 TEST(GltfShapes, ArePlacedByInvertibleMatricesOnly) {
   json document = with_shapes(json::array({body("box")}));
   document["nodes"][0]["scale"] = {1, 0, 1};
