@@ -13,7 +13,9 @@ struct Vec3Lanes {
   void resize(size_t n) { x.resize(n), y.resize(n), z.resize(n); }
   [[nodiscard]] Vec3f get(size_t i) const { return {x[i], y[i], z[i]}; }
   void set(size_t i, const Vec3f& v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
-  void append(const Vec3Lanes& other) { x.append(other.x), y.append(other.y), z.append(other.z); }
+  void append(const Vec3Lanes& other, size_t first = 0) {
+    x.append(other.x, first), y.append(other.y, first), z.append(other.z, first);
+  }
 };
 
 /// World-space rays. Lane i of every array is ray i.
@@ -33,10 +35,10 @@ struct RayWave {
     resize(size() + 1);
     set(size() - 1, ray);
   }
-  /// Without `time`.
-  void append(const RayWave& other) {
-    origin.append(other.origin), direction.append(other.direction);
-    t_min.append(other.t_min), t_max.append(other.t_max);
+  /// The other's rays from `first` on, without `time`.
+  void append(const RayWave& other, size_t first = 0) {
+    origin.append(other.origin, first), direction.append(other.direction, first);
+    t_min.append(other.t_min, first), t_max.append(other.t_max, first);
   }
 };
 

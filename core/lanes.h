@@ -36,10 +36,11 @@ class Lanes {
     data_[size_ - 1] = value;
   }
 
-  void append(const Lanes& other) {
-    const size_t at = size_;
-    resize(at + other.size_);
-    if (other.size_) std::memcpy(&data_[at], other.data(), other.size_ * sizeof(T));
+  /// The other's values from `first` on.
+  void append(const Lanes& other, size_t first = 0) {
+    const size_t at = size_, count = other.size_ - first;
+    resize(at + count);
+    if (count) std::memcpy(&data_[at], &other.data_[first], count * sizeof(T));
   }
 
  private:

@@ -36,7 +36,7 @@ void TreeRecorder::begin_sample(int sample, const PathWave& camera_rays, const L
   if (sample != sample_) return;
   if (times.size() > 0) time_ = times[pixel_];
   for (size_t i = 0; i < camera_rays.size(); ++i) {
-    if (camera_rays.paths[i].pixel != pixel_) continue;
+    if (camera_rays.paths.pixel[i] != pixel_) continue;
     followed_.pending(i) = uint32_t(rays_.size());
     rays_.push_back(started(camera_rays.rays.get(i), camera_rays.paths[i]));
   }

@@ -47,15 +47,18 @@ template <class F>
 
 /// The cone that a ray stands for: metres across where it starts, and how much wider it gets with each (Akenine-Moller
 /// et al., "Texture Level of Detail Strategies for Real-Time Ray Tracing", Ray Tracing Gems, chapter 20).
-struct Cone {
-  float width = 0, spread = 0;  // the spread is below 0 where light converges
+template <class F>
+struct BasicCone {
+  F width = F(0), spread = F(0);  // the spread is below 0 where light converges
 
   /// The cone further on; beyond a focus its sides have changed places.
-  [[nodiscard]] Cone at(float distance) const {
-    const float w = width + spread * distance;
-    return w < 0 ? Cone{-w, -spread} : Cone{w, spread};
+  [[nodiscard]] BasicCone at(const F& distance) const {
+    const F w = width + spread * distance;
+    const auto passed = w < F(0);
+    return {select(passed, F(-w), w), select(passed, F(-spread), spread)};
   }
 };
+using Cone = BasicCone<float>;
 
 /// The spread of the cone of `direction`, mirrored (`eta` 1) or refracted from `d` into where light is 1 / `eta` times
 /// as slow, at a surface with unit normal n towards where d comes from, and of that mean curvature, per metre, positive

@@ -21,9 +21,10 @@ struct LaneRays {
 /// What goes in: hits, and what is left of their rays.
 struct LaneWork {
   LaneHits hits;
-  RgbArray<ShadingLanes> weight;                         // of the rays, where they arrive
-  LaneArray<ShadingLanes> cone_width, cone_spread;       // of the rays, at the hits
-  std::array<uint32_t, kWidthOf<ShadingLanes>> pixel{};  // of the rays
+  RgbArray<ShadingLanes> weight;                    // of the rays, where they arrive
+  LaneArray<ShadingLanes> cone_width, cone_spread;  // of the rays, at the hits
+  LaneArray<ShadingLanes> roughness;                // of the surfaces that sent the rays
+  LaneArray<UintOf<ShadingLanes>> pixel, depth;     // of the rays
 };
 
 /// What comes out.

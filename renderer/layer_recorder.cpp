@@ -153,7 +153,7 @@ void LayerRecorder::begin_sample(int sample, const PathWave& camera_rays, const 
   sample_ = sample;
   followed_.begin(camera_rays.size(), {});
   for (size_t i = 0; i < camera_rays.size(); ++i)
-    followed_.pending(i) = {camera_rays.paths[i].pixel, Branch::view, true};
+    followed_.pending(i) = {camera_rays.paths.pixel[i], Branch::view, true};
 }
 
 void LayerRecorder::take_wave(size_t first) {

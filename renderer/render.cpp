@@ -85,12 +85,14 @@ void push_camera_rays(const Camera& camera, const RenderOptions& options, const 
                       WaveArena& arena) {
   generate_camera_rays(camera, options, cell, sample, arena);
   const CellPixels& pixels = arena.pixels;
-  arena.pending.paths.resize(pixels.size());
-  Path path{.cone = camera_cone(camera, options.height, options.samples)};
-  for (size_t i = 0; i < pixels.size(); ++i) {
-    path.pixel = uint32_t(pixels.y[i] * kCellSize + pixels.x[i]);
-    arena.pending.paths[i] = path;
-  }
+  PathRows& paths = arena.pending.paths;
+  paths.resize(0), paths.resize(pixels.size());
+  for (size_t i = 0; i < pixels.size(); ++i) paths.pixel[i] = uint32_t(pixels.y[i] * kCellSize + pixels.x[i]);
+  const Path start{.cone = camera_cone(camera, options.height, options.samples)};
+  const auto fill = [&](auto& row, const auto& value) { std::fill_n(row.data(), pixels.size(), value); };
+  fill(paths.red, start.weight.r), fill(paths.green, start.weight.g), fill(paths.blue, start.weight.b);
+  fill(paths.depth, start.depth), fill(paths.kind, start.kind), fill(paths.roughness, start.roughness);
+  fill(paths.cone_width, start.cone.width), fill(paths.cone_spread, start.cone.spread);
 }
 
 /// The same while the shutter is open: each at a time of its own, of a camera that may move.
@@ -100,7 +102,7 @@ void push_moving_camera_rays(const Camera& camera, const RenderOptions& options,
   arena.time_of_pixel.resize(size_t(kCellSize) * kCellSize);
   for (size_t i = 0; i < arena.pixels.size(); ++i) {
     const int x = cell.x0 + arena.pixels.x[i], y = cell.y0 + arena.pixels.y[i];
-    float& time = arena.time_of_pixel[arena.pending.paths[i].pixel];
+    float& time = arena.time_of_pixel[arena.pending.paths.pixel[i]];
     time = third_sobol_owen(sample, seed_of(uint32_t(x), uint32_t(y)));
     if (camera.track.empty()) continue;
     const Vec2d p = film_point<float>(x, y, sample, options.samples);

@@ -35,6 +35,8 @@ struct Shading {
   Boundary boundary;  // where the surface bounds a body
 };
 
+bool is_view(RayKind kind) { return kind == RayKind::camera || kind == RayKind::straight; }
+
 bool has_tangent(const SurfacePoint& surface) { return dot(surface.tangent_world, surface.tangent_world) > 0; }
 
 // What is left of them when an observer asks for the highlights alone.
@@ -76,7 +78,7 @@ class Whitted {
     while (arena_.pending.size() > 0) {
       take_wave();
       count_rays(first);
-      set_times(arena_.current.rays, [&](size_t i) { return arena_.current.paths[i].pixel; });
+      set_times(arena_.current.rays, [&](size_t i) { return arena_.current.paths.pixel[i]; });
       log(first ? WaveKind::camera : WaveKind::bounced, arena_.current.rays);
       coherence_ = first ? Coherence::coherent : Coherence::incoherent;
       arena_.clock.enter(Phase::traversal);
@@ -107,7 +109,7 @@ class Whitted {
       arena_.rays_by_kind[size_t(RayKind::camera)] += n;
       return;
     }
-    for (size_t i = 0; i < n; ++i) ++arena_.rays_by_kind[size_t(arena_.current.paths[i].kind)];
+    for (size_t i = 0; i < n; ++i) ++arena_.rays_by_kind[size_t(arena_.current.paths.kind[i])];
   }
 
   void log(WaveKind kind, const RayWave& rays) {
@@ -136,7 +138,7 @@ class Whitted {
       return;
     }
     to.resize(0);
-    for (size_t i = first; i < from.size(); ++i) to.push(from.rays.get(i), from.paths[i]);
+    to.append(from, first);
     from.resize(first);
   }
 
@@ -201,13 +203,13 @@ class Whitted {
   void shade_misses(std::span<uint32_t> rays) {
     size_t others = 0;
     for (const uint32_t i : rays) {
-      const Path& path = arena_.current.paths[i];
-      const bool view = path.kind == RayKind::camera || path.kind == RayKind::straight;
-      const bool uncovers = options_.transparent && view;
-      if (!uncovers && !sees_background(path)) {
+      const RayKind kind = arena_.current.paths.kind[i];
+      const bool uncovers = options_.transparent && is_view(kind);
+      if (!uncovers && !sees_background(kind)) {
         rays[others++] = i;
         continue;
       }
+      const Path path = arena_.current.paths[i];
       tell([&](TraceObserver& observer) { observer.look_at(i); });
       if (!uncovers) {
         add(path, LightTerm::background, path.weight * scene_.background);
@@ -223,23 +225,23 @@ class Whitted {
 
   void add_environment(std::span<const uint32_t> rays) {
     if constexpr (observed) {
-      const Path& path = arena_.current.paths[rays[0]];
+      const Path path = arena_.current.paths[rays[0]];
       tell([&](TraceObserver& observer) { observer.look_at(rays[0]); });
       const Vec3f direction = arena_.current.rays.direction.get(rays[0]);
       return add(path, LightTerm::environment,
                  path.weight * environment_radiance(*scene_.environment, direction, path.roughness));
     }
-    Vec3Array<ShadingLanes> direction;
-    LaneArray<ShadingLanes> roughness;
-    RgbArray<ShadingLanes> weight, light;
-    for (size_t k = 0; k < kLanes; ++k) {
-      const uint32_t i = rays[k < rays.size() ? k : 0];
-      const Path& path = arena_.current.paths[i];
-      direction.set(k, arena_.current.rays.direction.get(i)), weight.set(k, path.weight);
-      roughness[k] = path.roughness;
-    }
-    light.store(weight.load() * environment_radiance(*scene_.environment, direction.load(), roughness.load()));
-    for (size_t k = 0; k < rays.size(); ++k) radiance_[arena_.current.paths[rays[k]].pixel] += light.get(k);
+    const PathRows& paths = arena_.current.paths;
+    const RayWave& wave = arena_.current.rays;
+    LaneArray<IntOf<ShadingLanes>> numbers;
+    for (size_t k = 0; k < kLanes; ++k) numbers[k] = int32_t(rays[k < rays.size() ? k : 0]);
+    const IntOf<ShadingLanes> number = numbers.load();
+    const auto load = [&](const Lanes<float>& row) { return gather<ShadingLanes>(row.data(), number); };
+    const Vec3<ShadingLanes> direction{load(wave.direction.x), load(wave.direction.y), load(wave.direction.z)};
+    const BasicRgb<ShadingLanes> weight{load(paths.red), load(paths.green), load(paths.blue)};
+    RgbArray<ShadingLanes> light;
+    light.store(weight * environment_radiance(*scene_.environment, direction, load(paths.roughness)));
+    for (size_t k = 0; k < rays.size(); ++k) radiance_[paths.pixel[rays[k]]] += light.get(k);
   }
 
   void shade_in_lanes(const ShadingGroup& group, std::span<const uint32_t> hits) {
@@ -252,35 +254,37 @@ class Whitted {
     for (size_t k = 0; k < hits.size(); ++k) radiance_[pixel[k]] += light.ambient.get(k);
     const uint32_t present = (1u << hits.size()) - 1;
     for (size_t k = 0; k < light.shadow.size(); ++k) push_shadows(k, light.shadow[k], light.shadow[k].lanes & present);
-    // Ray by ray in the order in which they would be spawned one by one.
-    for (uint32_t lanes = (light.mirror.lanes | light.refracted.lanes) & present; lanes; lanes &= lanes - 1) {
-      const auto k = size_t(std::countr_zero(lanes));
-      push_spawned(hits[k], k, light.mirror, RayKind::mirror);
-      push_spawned(hits[k], k, light.refracted, RayKind::refracted);
-    }
+    push_spawned(hits, present);
   }
 
   /// Lanes beyond the last hit are as the first.
   void load_lanes(std::span<const uint32_t> hits) {
     LaneWork& work = arena_.lane_work;
     const RayWave& rays = arena_.current.rays;
+    const PathRows& paths = arena_.current.paths;
     const HitWave& found = arena_.hits;
     LaneArray<IntOf<ShadingLanes>> numbers;
     for (size_t k = 0; k < kLanes; ++k) {
       const uint32_t i = hits[k < hits.size() ? k : 0];
-      const Path& path = arena_.current.paths[i];
       numbers[k] = int32_t(i);
       work.hits.ids[k] = {found.object[i], found.part[i], found.primitive[i]};
-      work.weight.set(k, arriving_weight(path, found.t[i]));
-      const Cone cone = path.cone.at(found.t[i]);
-      work.cone_width[k] = cone.width, work.cone_spread[k] = cone.spread;
-      work.pixel[k] = path.pixel;
     }
     const IntOf<ShadingLanes> number = numbers.load();
     const auto load = [&](const Lanes<float>& row) { return gather<ShadingLanes>(row.data(), number); };
+    const auto load_number = [&](const Lanes<uint32_t>& row) {
+      return load_at<UintOf<ShadingLanes>>(address_of(row.data(), number));
+    };
+    const ShadingLanes t = load(found.t);
     work.hits.origin.store({load(rays.origin.x), load(rays.origin.y), load(rays.origin.z)});
     work.hits.direction.store({load(rays.direction.x), load(rays.direction.y), load(rays.direction.z)});
-    work.hits.t.store(load(found.t)), work.hits.u.store(load(found.u)), work.hits.v.store(load(found.v));
+    work.hits.t.store(t), work.hits.u.store(load(found.u)), work.hits.v.store(load(found.v));
+    work.weight.store({load(paths.red), load(paths.green), load(paths.blue)});
+    for (size_t k = 0; k < kLanes && paths.media.size() > 0; ++k)
+      work.weight.set(k, arriving_weight(paths[size_t(numbers[k])], found.t[size_t(numbers[k])]));
+    const BasicCone<ShadingLanes> cone = BasicCone<ShadingLanes>{load(paths.cone_width), load(paths.cone_spread)}.at(t);
+    work.cone_width.store(cone.width), work.cone_spread.store(cone.spread);
+    work.roughness.store(load(paths.roughness));
+    work.pixel.store(load_number(paths.pixel)), work.depth.store(load_number(paths.depth));
   }
 
   void push_shadows(size_t of_light, const LaneRays& rays, uint32_t lanes) {
@@ -294,18 +298,67 @@ class Whitted {
     append(wave.rays.direction.y, rays.direction.y), append(wave.rays.direction.z, rays.direction.z);
     append(wave.rays.t_min, LaneArray<ShadingLanes>{}), append(wave.rays.t_max, rays.t_max);
     append(wave.red, rays.weight.r), append(wave.green, rays.weight.g), append(wave.blue, rays.weight.b);
-    append_lanes(wave.pixel, lanes, arena_.lane_work.pixel);
+    append_lanes(wave.pixel, lanes, arena_.lane_work.pixel.values);
     shadows_ += size_t(std::popcount(lanes));
   }
 
-  /// What a lane spawned, if anything.
-  void push_spawned(uint32_t i, size_t k, const LaneRays& rays, RayKind kind) {
-    if (!(rays.lanes >> k & 1)) return;
-    const Path& path = arena_.current.paths[i];
-    const Cone cone{arena_.lane_work.cone_width[k], rays.cone_spread[k]};
-    const Path next = next_path(path, rays.weight.get(k), kind, path.media, cone, arena_.lane_light.roughness[k]);
-    if (outcome_of(next) == SpawnOutcome::traced)
-      arena_.pending.push({rays.origin.get(k), rays.direction.get(k)}, next);
+  /// Of the rays of a block that go on, those whose bit is set.
+  [[nodiscard]] uint32_t traced_lanes(const LaneRays& rays, uint32_t lanes) const {
+    if (lanes == 0) return 0;
+    const ShadingLanes largest = max_component(rays.weight.load());
+    const auto matters = largest >= ShadingLanes(options_.min_weight) && largest > ShadingLanes(0);
+    const auto shallow =
+        convert_mask<ShadingLanes>(arena_.lane_work.depth.load() < UintOf<ShadingLanes>(uint32_t(options_.max_depth)));
+    return lane_bits(matters && shallow) & lanes;
+  }
+
+  /// What the hits of a block spawned, ray by ray in the order in which they would be spawned one by one.
+  void push_spawned(std::span<const uint32_t> hits, uint32_t present) {
+    const LaneRays &mirror = arena_.lane_light.mirror, &refracted = arena_.lane_light.refracted;
+    const uint32_t mirrored = traced_lanes(mirror, mirror.lanes & present),
+                   passing = traced_lanes(refracted, refracted.lanes & present);
+    if ((mirrored | passing) == 0) return;
+    const LaneWork& work = arena_.lane_work;
+    PathWave& to = arena_.pending;
+    const auto append = [&](auto& row, const auto& of_mirror, const auto& of_refracted) {
+      append_pairs(row, mirrored, of_mirror.values, passing, of_refracted.values);
+    };
+    const auto append_both = [&](auto& row, const auto& of_both) { append(row, of_both, of_both); };
+    const auto all = [](auto value) {
+      struct {
+        std::array<decltype(value), kLanes> values;
+      } same;
+      same.values.fill(value);
+      return same;
+    };
+    const PathRows& from = arena_.current.paths;
+    size_t next = to.size();
+    for (uint32_t lanes = from.media.size() > 0 ? mirrored | passing : 0; lanes; lanes &= lanes - 1) {
+      const auto k = size_t(std::countr_zero(lanes));
+      const Media media = from.media_of(hits[k]);
+      if (mirrored >> k & 1) to.paths.set_media(next++, media);
+      if (passing >> k & 1) to.paths.set_media(next++, media);
+    }
+    append(to.rays.origin.x, mirror.origin.x, refracted.origin.x);
+    append(to.rays.origin.y, mirror.origin.y, refracted.origin.y);
+    append(to.rays.origin.z, mirror.origin.z, refracted.origin.z);
+    append(to.rays.direction.x, mirror.direction.x, refracted.direction.x);
+    append(to.rays.direction.y, mirror.direction.y, refracted.direction.y);
+    append(to.rays.direction.z, mirror.direction.z, refracted.direction.z);
+    append_both(to.rays.t_min, all(Rayf{}.t_min)), append_both(to.rays.t_max, all(Rayf{}.t_max));
+    append(to.paths.red, mirror.weight.r, refracted.weight.r);
+    append(to.paths.green, mirror.weight.g, refracted.weight.g);
+    append(to.paths.blue, mirror.weight.b, refracted.weight.b);
+    append(to.paths.kind, all(RayKind::mirror), all(RayKind::refracted));
+    append(to.paths.cone_spread, mirror.cone_spread, refracted.cone_spread);
+    append_both(to.paths.cone_width, work.cone_width);
+    append_both(to.paths.pixel, work.pixel);
+    LaneArray<UintOf<ShadingLanes>> depth;
+    depth.store(work.depth.load() + 1);
+    append_both(to.paths.depth, depth);
+    LaneArray<ShadingLanes> roughness;
+    roughness.store(blurred_by(work.roughness.load(), arena_.lane_light.roughness.load()));
+    append_both(to.paths.roughness, roughness);
   }
 
   /// What is left of a ray's weight after a distance.
@@ -314,10 +367,9 @@ class Whitted {
   }
 
   void shade(size_t i) {
-    const Path& path = arena_.current.paths[i];
+    const Path path = arena_.current.paths[i];
     const HitWave& hits = arena_.hits;
     const Rayf ray = arena_.current.rays.get(i);
-    const bool view = path.kind == RayKind::camera || path.kind == RayKind::straight;
     const HitIds ids{hits.object[i], hits.part[i], hits.primitive[i]};
     arena_.clock.enter_part(Phase::surface_points);
     SurfacePoint surface = surface_point(scene_, ray, ids, hits.t[i], hits.u[i], hits.v[i], time_of(path.pixel));
@@ -347,10 +399,10 @@ class Whitted {
     }
     if (alpha < 1) {
       // A texel that is not there at all costs no depth: foliage is made of many of them.
-      const uint16_t depth = alpha > 0 ? uint16_t(path.depth + 1) : path.depth;
+      const uint32_t depth = alpha > 0 ? path.depth + 1 : path.depth;
       spawn_as(s, ray.direction,
-               {path.pixel, arriving * (1 - alpha), depth, view ? RayKind::straight : path.kind, path.media, cone,
-                path.roughness});
+               {path.pixel, arriving * (1 - alpha), depth, is_view(path.kind) ? RayKind::straight : path.kind,
+                path.media, cone, path.roughness});
     }
     if (alpha == 0) return;
     const Rgb emitted = s.weight * emission(material, table_, inputs);
@@ -372,10 +424,9 @@ class Whitted {
   }
 
   /// Of a ray that leaves the scene; else it sees the environment.
-  [[nodiscard]] bool sees_background(const Path& path) const {
+  [[nodiscard]] bool sees_background(RayKind kind) const {
     if (!scene_.environment) return true;
-    const bool view = path.kind == RayKind::camera || path.kind == RayKind::straight;
-    return scene_.environment->seen ? view && scene_.has_background : path.kind != RayKind::mirror;
+    return scene_.environment->seen ? is_view(kind) && scene_.has_background : kind != RayKind::mirror;
   }
 
   /// Of what lies beyond the surface to what lies before it.
@@ -541,8 +592,13 @@ class Whitted {
   /// One deeper than `path`, from a surface of that roughness.
   static Path next_path(const Path& path, const Rgb& weight, RayKind kind, const Media& media, const Cone& cone,
                         float roughness) {
-    const float blur = std::min(1.0f, std::sqrt(path.roughness * path.roughness + roughness * roughness));
-    return {path.pixel, weight, uint16_t(path.depth + 1), kind, media, cone, blur};
+    return {path.pixel, weight, path.depth + 1, kind, media, cone, blurred_by(path.roughness, roughness)};
+  }
+
+  /// The roughness of two surfaces one after the other.
+  template <class F>
+  static F blurred_by(const F& before, const F& then) {
+    return smaller(F(square_root(F(before * before + then * then))), F(1));
   }
 
   [[nodiscard]] SpawnOutcome outcome_of(const Path& path) const {
@@ -638,15 +694,6 @@ class Whitted {
 };
 
 }  // namespace
-
-void ShadowWave::clear() {
-  rays.resize(0), pixel.resize(0), red.resize(0), green.resize(0), blue.resize(0), number.resize(0);
-}
-
-void ShadowWave::append(const ShadowWave& other) {
-  rays.append(other.rays), pixel.append(other.pixel), number.append(other.number);
-  red.append(other.red), green.append(other.green), blue.append(other.blue);
-}
 
 void trace_whitted(const Scene& scene, const AcceleratedScene& accelerated, const ShadingGroups& groups,
                    const RenderOptions& options, WaveArena& arena, Rgb* radiance, float* background) {

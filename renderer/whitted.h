@@ -5,9 +5,8 @@
 #include <vector>
 
 #include "renderer/camera_cell.h"
-#include "renderer/camera_ray.h"
 #include "renderer/lane_shading.h"
-#include "renderer/media.h"
+#include "renderer/path_wave.h"
 #include "renderer/phase_clock.h"
 #include "renderer/render.h"
 #include "renderer/surface.h"
@@ -16,42 +15,6 @@
 namespace alhazen {
 
 class TraceObserver;
-
-/// What a ray is for. A `straight` ray continues the view of its camera ray through surfaces with alpha.
-enum class RayKind : uint8_t { camera, mirror, refracted, straight };
-
-/// What a ray brings along: on whose behalf it is traced, and through what.
-struct Path {
-  uint32_t pixel = 0;  // index of the sample's pixel within the cell
-  Rgb weight{1.0f};
-  uint16_t depth = 0;
-  RayKind kind = RayKind::camera;
-  Media media{};        // around its origin
-  Cone cone{};          // around it, as wide as its share of the picture
-  float roughness = 0;  // of the surfaces that sent it here: how blurred it sees the environment
-};
-
-/// A wave of rays on their way to pixels.
-struct PathWave {
-  RayWave rays;
-  Lanes<Path> paths;
-
-  [[nodiscard]] size_t size() const { return rays.size(); }
-  void resize(size_t n) { rays.resize(n), paths.resize(n); }
-  void push(const Rayf& ray, const Path& path) { rays.push(ray), paths.push(path); }
-};
-
-/// Shadow rays and what their pixels get of the light where nothing is in its way.
-struct ShadowWave {
-  RayWave rays;
-  Lanes<uint32_t> pixel;
-  Lanes<float> red, green, blue;
-  Lanes<uint32_t> number;  // in the order of asking, for an observer; else of no elements
-
-  [[nodiscard]] size_t size() const { return pixel.size(); }
-  void clear();
-  void append(const ShadowWave& other);
-};
 
 /// Memory of one thread, reused from cell to cell.
 struct WaveArena {
