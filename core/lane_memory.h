@@ -52,10 +52,50 @@ template <class N>
     return load(addresses);
 }
 
-/// table[index] in each lane.
+/// The number of 64 bits at each address.
 template <class F>
-[[nodiscard]] F gather(const float* table, const IntOf<F>& index) {
-  return load_at<F>(address_of(table, index));
+[[nodiscard]] AddressOf<F> load_words_at(const AddressOf<F>& addresses) {
+#if defined __AVX512F__ && defined __GLIBCXX__
+  if constexpr (kWidthOf<F> == 16) {
+    using Half = std::experimental::native_simd<uint64_t>;
+    const auto load = [](const Half& at) { return Half(_mm512_i64gather_epi64(static_cast<__m512i>(at), nullptr, 1)); };
+    const auto halves = std::experimental::split<Half>(addresses);
+    return std::experimental::concat(load(halves[0]), load(halves[1]));
+  }
+#elif defined __AVX2__ && defined __GLIBCXX__
+  if constexpr (kWidthOf<F> == 8) {
+    using Half = std::experimental::native_simd<uint64_t>;
+    const auto load = [](const Half& at) {
+      return Half(_mm256_i64gather_epi64(static_cast<const long long*>(nullptr), static_cast<__m256i>(at), 1));
+    };
+    const auto halves = std::experimental::split<Half>(addresses);
+    return std::experimental::concat(load(halves[0]), load(halves[1]));
+  }
+#endif
+  const auto load = [](uint64_t address) {
+    uint64_t word;
+    std::memcpy(&word, reinterpret_cast<const void*>(uintptr_t(address)), sizeof word);
+    return word;
+  };
+  if constexpr (IsLanes<F>)
+    return AddressOf<F>([&](auto k) { return load(addresses[k]); });
+  else
+    return load(addresses);
+}
+
+/// table[index] in each lane.
+template <class N>
+[[nodiscard]] N gather(const ScalarOf<N>* table, const IntOf<N>& index) {
+  static_assert(sizeof(ScalarOf<N>) == 4);
+#if defined __AVX512F__ && defined __GLIBCXX__
+  if constexpr (kWidthOf<N> == 16)
+    return std::bit_cast<N>(_mm512_i32gather_epi32(std::bit_cast<__m512i>(index), table, 4));
+#elif defined __AVX2__ && defined __GLIBCXX__
+  if constexpr (kWidthOf<N> == 8)
+    return std::bit_cast<N>(
+        _mm256_i32gather_epi32(reinterpret_cast<const int*>(table), std::bit_cast<__m256i>(index), 4));
+#endif
+  return load_at<N>(address_of(table, index));
 }
 
 /// Appends the values whose bit is set, in their order.

@@ -37,13 +37,6 @@ D fold(const D& u, Wrap wrap) {
   return D(0);
 }
 
-/// Two texels side by side in each lane.
-template <class F>
-struct TexelPair {
-  LaneArray<IntOf<F>> a, b;
-  F t;  // weight of b
-};
-
 /// `folded`: the coordinate in [0, 1]; `size`: texels along it. Where `nearest`, both are that one.
 template <class F>
 TexelPair<F> neighbours(const DoubleOf<F>& folded, Wrap wrap, const IntOf<F>& size, const MaskOf<F>& nearest) {
@@ -55,10 +48,8 @@ TexelPair<F> neighbours(const DoubleOf<F>& folded, Wrap wrap, const IntOf<F>& si
   const bool repeats = wrap == Wrap::repeat;
   const I inner_a = select(a < I(0), repeats ? last : I(0), a), inner_b = select(b > last, repeats ? I(0) : last, b);
   const auto only = convert_mask<I>(nearest);
-  TexelPair<F> pair;
-  pair.a.store(select(only, there, inner_a)), pair.b.store(select(only, there, inner_b));
-  pair.t = select(nearest, F(0), convert<F>(D(x - D(0.5) - low)));
-  return pair;
+  return {select(only, there, inner_a), select(only, there, inner_b),
+          select(nearest, F(0), convert<F>(D(x - D(0.5) - low)))};
 }
 
 template <class Decode>
@@ -112,7 +103,9 @@ struct TexelsOneByOne {
   const LevelImages<F>& images;
   ColorSpace space;
 
-  BasicRgba<F> operator()(const LaneArray<IntOf<F>>& x, const LaneArray<IntOf<F>>& y) const {
+  BasicRgba<F> operator()(const IntOf<F>& xs, const IntOf<F>& ys) const {
+    LaneArray<IntOf<F>> x, y;
+    x.store(xs), y.store(ys);
     RgbaArray<F> texels;
     for (size_t k = 0; k < kWidthOf<F>; ++k) {
       const T* samples = std::get_if<std::vector<T>>(&images[k]->samples)->data();
@@ -129,19 +122,33 @@ F linear_byte(const F& byte) {
   return byte * F(0x1.01p-8f) + byte * F(0x1.010102p-24f);
 }
 
-/// Texels of bytes, in all lanes at once: four bytes are fetched, of which the first are the channels.
+/// Texels of bytes, in all lanes at once: a row's neighbours by one fetch of eight bytes.
 template <int channels, class F>
 struct TexelsOfBytes {
   using I = IntOf<F>;
-  AddressOf<F> samples;
-  I width, last_word;  // where the image's last four bytes begin
+  using A = AddressOf<F>;
+  A samples;
+  I width, last_word;  // where the image's last eight bytes begin
   ColorSpace space;
 
-  BasicRgba<F> operator()(const LaneArray<I>& x, const LaneArray<I>& y) const {
-    const I offset = (y.load() * width + x.load()) * I(channels), at = smaller(offset, last_word);
-    const I word = load_at<I>(samples + convert<AddressOf<F>>(at)) >> ((offset - at) * I(8));
+  BasicRgba<F> operator()(const I& x, const I& y) const { return decoded(convert<I>(word(x, y))); }
+
+  /// Those at x and x + 1.
+  std::array<BasicRgba<F>, 2> pair(const I& x, const I& y) const {
+    const A both = word(x, y);
+    return {decoded(convert<I>(both)), decoded(convert<I>(A(both >> (8 * channels))))};
+  }
+
+ private:
+  /// Eight bytes from the texel on, its first in the lowest ones; what lies beyond the image is 0.
+  A word(const I& x, const I& y) const {
+    const I offset = (y * width + x) * I(channels), at = smaller(offset, last_word);
+    return load_words_at<F>(samples + convert<A>(at)) >> convert<A>((offset - at) * I(8));
+  }
+
+  BasicRgba<F> decoded(const I& bytes) const {
     const auto channel = [&](int c, ColorSpace of_channel) {
-      const I byte = (word >> (8 * c)) & I(0xFF);
+      const I byte = (bytes >> (8 * c)) & I(0xFF);
       return of_channel == ColorSpace::srgb ? gather<F>(kBytes[size_t(ColorSpace::srgb)].data(), byte)
                                             : linear_byte<F>(convert<F>(byte));
     };
@@ -154,50 +161,76 @@ struct TexelsOfBytes {
 };
 
 template <class F, class Texels>
-BasicRgba<F> filtered(const Texels& texels, const TexelPair<F>& x, const TexelPair<F>& y) {
-  return mix(mix(texels(x.a, y.a), texels(x.b, y.a), x.t), mix(texels(x.a, y.b), texels(x.b, y.b), x.t), y.t);
+BasicRgba<F> filtered(const Texels& texels, const LevelTexels<F>& at) {
+  const auto row = [&](const IntOf<F>& y) {
+    if constexpr (requires { texels.pair(at.x.a, y); }) {
+      if (at.in_rows) {
+        const std::array<BasicRgba<F>, 2> pair = texels.pair(at.x.a, y);
+        return mix(pair[0], pair[1], at.x.t);
+      }
+    }
+    return mix(texels(at.x.a, y), texels(at.x.b, y), at.x.t);
+  };
+  return mix(row(at.y.a), row(at.y.b), at.y.t);
 }
 
 template <int channels, class F>
-BasicRgba<F> filtered(const LevelImages<F>& images, ColorSpace space, const IntOf<F>& width, const TexelPair<F>& x,
-                      const TexelPair<F>& y) {
+BasicRgba<F> filtered(const LevelImages<F>& images, bool one_image, ColorSpace space, const LevelTexels<F>& at) {
   const TextureImage& image = *images[0];
   if (std::holds_alternative<std::vector<uint16_t>>(image.samples))
-    return filtered(TexelsOneByOne<channels, uint16_t, F>{images, space}, x, y);
+    return filtered(TexelsOneByOne<channels, uint16_t, F>{images, space}, at);
   if (std::holds_alternative<std::vector<float>>(image.samples))
-    return filtered(TexelsOneByOne<channels, float, F>{images, space}, x, y);
+    return filtered(TexelsOneByOne<channels, float, F>{images, space}, at);
   if constexpr (IsLanes<F>) {
-    LaneArray<AddressOf<F>> samples;
-    LaneArray<IntOf<F>> last_word;
-    bool fits = true;
-    for (size_t k = 0; k < kWidthOf<F>; ++k) {
-      const auto& bytes = *std::get_if<std::vector<uint8_t>>(&images[k]->samples);
-      fits = fits && bytes.size() >= 4 && bytes.size() <= size_t(std::numeric_limits<int32_t>::max());
-      samples[k] = reinterpret_cast<uintptr_t>(bytes.data()), last_word[k] = int32_t(bytes.size()) - 4;
+    const auto bytes_of = [&](size_t k) -> const auto& {
+      return *std::get_if<std::vector<uint8_t>>(&images[k]->samples);
+    };
+    const auto fit = [](size_t size) { return size >= 8 && size <= size_t(std::numeric_limits<int32_t>::max()); };
+    const auto fetched = [&](const AddressOf<F>& samples, const IntOf<F>& last_word) {
+      return filtered(TexelsOfBytes<channels, F>{samples, at.width, last_word, space}, at);
+    };
+    if (one_image) {
+      const auto& bytes = bytes_of(0);
+      if (fit(bytes.size()))
+        return fetched(AddressOf<F>(reinterpret_cast<uintptr_t>(bytes.data())), IntOf<F>(int32_t(bytes.size()) - 8));
+    } else {
+      LaneArray<AddressOf<F>> samples;
+      LaneArray<IntOf<F>> last_word;
+      bool all_fit = true;
+      for (size_t k = 0; k < kWidthOf<F>; ++k) {
+        const auto& bytes = bytes_of(k);
+        all_fit = all_fit && fit(bytes.size());
+        samples[k] = reinterpret_cast<uintptr_t>(bytes.data()), last_word[k] = int32_t(bytes.size()) - 8;
+      }
+      if (all_fit) return fetched(samples.load(), last_word.load());
     }
-    if (fits) return filtered(TexelsOfBytes<channels, F>{samples.load(), width, last_word.load(), space}, x, y);
   }
-  return filtered(TexelsOneByOne<channels, uint8_t, F>{images, space}, x, y);
+  return filtered(TexelsOneByOne<channels, uint8_t, F>{images, space}, at);
 }
 
 template <class F>
-BasicRgba<F> at_levels(const LevelImages<F>& images, const Texture& texture, ColorSpace space, const DoubleOf<F>& u,
-                       const DoubleOf<F>& v, const MaskOf<F>& nearest) {
-  LaneArray<IntOf<F>> widths, heights;
-  for (size_t k = 0; k < kWidthOf<F>; ++k) widths[k] = images[k]->width, heights[k] = images[k]->height;
-  const IntOf<F> width = widths.load();
-  const TexelPair<F> x = neighbours<F>(u, texture.wrap_u, width, nearest);
-  const TexelPair<F> y = neighbours<F>(v, texture.wrap_v, heights.load(), nearest);
+BasicRgba<F> filtered(const LevelImages<F>& images, bool one_image, ColorSpace space, const LevelTexels<F>& at) {
   switch (images[0]->channels) {
     case 1:
-      return filtered<1, F>(images, space, width, x, y);
+      return filtered<1, F>(images, one_image, space, at);
     case 2:
-      return filtered<2, F>(images, space, width, x, y);
+      return filtered<2, F>(images, one_image, space, at);
     case 3:
-      return filtered<3, F>(images, space, width, x, y);
+      return filtered<3, F>(images, one_image, space, at);
     default:
-      return filtered<4, F>(images, space, width, x, y);
+      return filtered<4, F>(images, one_image, space, at);
   }
+}
+
+template <class F>
+LevelTexels<F> texels_at(const LevelImages<F>& images, const Texture& sampler, const DoubleOf<F>& u,
+                         const DoubleOf<F>& v, const MaskOf<F>& nearest) {
+  LaneArray<IntOf<F>> width, height;
+  for (size_t k = 0; k < kWidthOf<F>; ++k) width[k] = images[k]->width, height[k] = images[k]->height;
+  LevelTexels<F> at{width.load(), neighbours<F>(u, sampler.wrap_u, width.load(), nearest),
+                    neighbours<F>(v, sampler.wrap_v, height.load(), nearest)};
+  at.in_rows = !any_of(at.x.b != at.x.a + IntOf<F>(1));
+  return at;
 }
 
 /// The mip level at which a texel is as large as the footprint; 0 where a texel is larger.
@@ -212,18 +245,22 @@ F level_of(const TextureImage& image, const TextureUse& use, const BasicSurfaceI
   return select(smaller_texels, F(log2(clamped(texels, 1, 1e9f))), F(0));
 }
 
-}  // namespace
+/// The level `beyond` the larger one of each lane, or the last.
+template <class F>
+LevelImages<F> images_at(const TextureImage& image, const LaneArray<IntOf<F>>& level, size_t beyond) {
+  LevelImages<F> images;
+  for (size_t k = 0; k < kWidthOf<F>; ++k) {
+    const size_t number = std::min(size_t(level[k]) + beyond, image.smaller.size());
+    images[k] = number == 0 ? &image : &image.smaller[number - 1];
+  }
+  return images;
+}
 
 template <class F>
-BasicRgba<F> sample_used(const TextureTable& table, const TextureUse& use, ColorSpace space,
-                         const BasicSurfaceInputs<F>& inputs) noexcept {
+void find_texels(const TextureImage& image, const Texture& sampler, const TextureUse& use,
+                 const BasicSurfaceInputs<F>& inputs, TextureLookup<F>& lookup) {
   using D = DoubleOf<F>;
-  if (!table.textures || !table.images || use.texture >= table.textures->size()) return {};
-  const Texture& texture = (*table.textures)[use.texture];
-  if (texture.image >= table.images->size()) return {};
-  const TextureImage& image = (*table.images)[texture.image];
-  if (image.width <= 0 || image.height <= 0 || image.channels < 1 || image.channels > 4) return {};
-
+  using I = IntOf<F>;
   D u(0), v(0);
   if (inputs.uvs && int64_t{use.uv_set} < inputs.uv_count) {
     const D x = convert<D>(inputs.uvs[use.uv_set].x), y = convert<D>(inputs.uvs[use.uv_set].y);
@@ -233,33 +270,56 @@ BasicRgba<F> sample_used(const TextureTable& table, const TextureUse& use, Color
   const D tu = D(double(use.xx)) * u + D(double(use.xy)) * v + D(double(use.x0));
   const D tv = D(double(use.yx)) * u + D(double(use.yy)) * v + D(double(use.y0));
   const auto finite = is_finite_number(tu) && is_finite_number(tv);
-  const D folded_u = fold(select(finite, tu, D(0)), texture.wrap_u);
-  const D folded_v = fold(select(finite, tv, D(0)), texture.wrap_v);
+  const D folded_u = fold(select(finite, tu, D(0)), sampler.wrap_u);
+  const D folded_v = fold(select(finite, tv, D(0)), sampler.wrap_v);
 
-  const F level = texture.mipmaps == Mipmaps::none || image.smaller.empty() ? F(0) : level_of(image, use, inputs);
+  const F level = sampler.mipmaps == Mipmaps::none || image.smaller.empty() ? F(0) : level_of(image, use, inputs);
   const MaskOf<F> enlarged = !(level > F(0));
   const auto nearest = [&](bool large, bool small) {
     return large == small ? MaskOf<F>(large) : large ? enlarged : !enlarged;
   };
   // Two neighbouring levels in each lane, and how much of the smaller one.
-  using I = IntOf<F>;
   const I last(int(image.smaller.size()));
-  const F rounded = texture.mipmaps == Mipmaps::nearest ? rounded_down(F(level + F(0.5f))) : level;
+  const F rounded = sampler.mipmaps == Mipmaps::nearest ? rounded_down(F(level + F(0.5f))) : level;
   const I below = smaller(convert<I>(rounded), last);
-  const F fraction = select(convert_mask<F>(below < last), F(rounded - convert<F>(below)), F(0));
-  LaneArray<I> numbers;
-  numbers.store(below);
-  LevelImages<F> large, small;
-  const auto at_level = [&](size_t k) { return k == 0 ? &image : &image.smaller[k - 1]; };
-  for (size_t k = 0; k < kWidthOf<F>; ++k) {
-    large[k] = at_level(size_t(numbers[k]));
-    small[k] = at_level(std::min(size_t(numbers[k]) + 1, image.smaller.size()));
+  lookup.fraction = select(convert_mask<F>(below < last), F(rounded - convert<F>(below)), F(0));
+  lookup.level.store(below);
+  lookup.one_level = !any_of(below != I(lookup.level[0]));
+  lookup.large = texels_at<F>(images_at<F>(image, lookup.level, 0), sampler, folded_u, folded_v,
+                              nearest(sampler.nearest, sampler.nearest_small));
+  if (any_of(lookup.fraction > F(0)))
+    lookup.small = texels_at<F>(images_at<F>(image, lookup.level, 1), sampler, folded_u, folded_v,
+                                MaskOf<F>(sampler.nearest_small));
+}
+
+template <class F>
+typename TextureLookup<F>::Key key_of(const TextureImage& image, const Texture& sampler, const TextureUse& use) {
+  typename TextureLookup<F>::Key key{use, sampler, image.width, image.height, image.smaller.size()};
+  key.use.texture = key.sampler.image = kNone;
+  return key;
+}
+
+}  // namespace
+
+template <class F>
+BasicRgba<F> sample_used(const TextureTable& table, const TextureUse& use, ColorSpace space,
+                         const BasicSurfaceInputs<F>& inputs) noexcept {
+  if (!table.textures || !table.images || use.texture >= table.textures->size()) return {};
+  const Texture& texture = (*table.textures)[use.texture];
+  if (texture.image >= table.images->size()) return {};
+  const TextureImage& image = (*table.images)[texture.image];
+  if (image.width <= 0 || image.height <= 0 || image.channels < 1 || image.channels > 4) return {};
+
+  TextureLookup<F> own;
+  TextureLookup<F>& lookup = inputs.lookup ? *inputs.lookup : own;
+  if (const auto key = key_of<F>(image, texture, use); lookup.key != key) {
+    find_texels(image, texture, use, inputs, lookup);
+    lookup.key = key;
   }
-  const BasicRgba<F> first =
-      at_levels<F>(large, texture, space, folded_u, folded_v, nearest(texture.nearest, texture.nearest_small));
-  if (!any_of(fraction > F(0))) return first;
-  const MaskOf<F> nearest_small(texture.nearest_small);
-  return mix(first, at_levels<F>(small, texture, space, folded_u, folded_v, nearest_small), fraction);
+  const BasicRgba<F> large = filtered<F>(images_at<F>(image, lookup.level, 0), lookup.one_level, space, lookup.large);
+  if (!any_of(lookup.fraction > F(0))) return large;
+  const BasicRgba<F> small = filtered<F>(images_at<F>(image, lookup.level, 1), lookup.one_level, space, lookup.small);
+  return mix(large, small, lookup.fraction);
 }
 
 template BasicRgba<float> sample_used(const TextureTable&, const TextureUse&, ColorSpace,

@@ -32,6 +32,8 @@ struct Texture {
   bool nearest = false;        // magFilter NEAREST; else bilinear
   bool nearest_small = false;  // minFilter NEAREST, NEAREST_MIPMAP_...; else bilinear
   Mipmaps mipmaps = Mipmaps::linear;
+
+  friend bool operator==(const Texture&, const Texture&) = default;
 };
 
 /// A material's use of a texture (glTF textureInfo with KHR_texture_transform).
@@ -42,18 +44,52 @@ struct TextureUse {
   float xx = 1, xy = 0, x0 = 0, yx = 0, yy = 1, y0 = 0;
 
   [[nodiscard]] explicit operator bool() const { return texture != kNone; }
+  friend bool operator==(const TextureUse&, const TextureUse&) = default;
 };
 
 enum class ColorSpace : uint8_t { linear, srgb };
+
+/// Two texels beside or above each other in each lane.
+template <class F>
+struct TexelPair {
+  IntOf<F> a, b;
+  F t;  // weight of b
+};
+
+/// The texels of one mip level in each lane that a look-up mixes.
+template <class F>
+struct LevelTexels {
+  IntOf<F> width;  // of the level
+  TexelPair<F> x, y;
+  bool in_rows = false;  // in every lane, x.b follows x.a in the image
+};
+
+/// Where a look-up's texels lie. Textures of one size that are used alike, as those of a material mostly are, have it
+/// in common; found for one, it is there for the others.
+template <class F>
+struct TextureLookup {
+  struct Key {
+    TextureUse use;   // of no texture
+    Texture sampler;  // of no image
+    int width = 0, height = 0;
+    size_t smaller = 0;  // levels
+    friend bool operator==(const Key&, const Key&) = default;
+  } key;                        // no width: nothing is found yet
+  LaneArray<IntOf<F>> level;    // the larger of two
+  F fraction;                   // of the smaller one
+  bool one_level = false;       // in all lanes
+  LevelTexels<F> large, small;  // `small` where fractions are not 0
+};
 
 /// What a surface brings to a material: interpolated at the hit. Of lanes: at each of their hits.
 template <class F>
 struct BasicSurfaceInputs {
   const Vec2<F>* uvs = nullptr;
   int uv_count = 0;
-  BasicRgba<F> color;               // vertex colour; white where the mesh has none
-  F footprint = 0;                  // metres of the surface that a look-up stands for; 0: a point
-  const F* uv_per_metre = nullptr;  // for each of `uvs`; none, or 0: unknown, a point is looked up
+  BasicRgba<F> color;                  // vertex colour; white where the mesh has none
+  F footprint = 0;                     // metres of the surface that a look-up stands for; 0: a point
+  const F* uv_per_metre = nullptr;     // for each of `uvs`; none, or 0: unknown, a point is looked up
+  TextureLookup<F>* lookup = nullptr;  // the last one for this surface, if it is kept
 };
 using SurfaceInputs = BasicSurfaceInputs<float>;
 

@@ -143,6 +143,8 @@ void shade_lanes(const Scene& scene, const ShadingGroup& group, const LaneWork& 
   hit.d = work.hits.direction.load(), hit.b = -hit.d;
   hit.surface.footprint = footprint(work.cone_width.load(), hit.surface.ng_world, hit.d);
   hit.weight = work.weight.load();
+  TextureLookup<F> lookup;
+  hit.surface.lookup = &lookup;
   clock.enter_part(group.has_textures ? Phase::textures : Phase::shading);
   hit.n = shading_normal(hit.surface, material.normal_texture, material.normal_scale, table);
   hit.enters = dot(hit.n, hit.d) < F(0);

@@ -24,9 +24,10 @@ struct BasicSurfacePoint {
   uint32_t material = 0;
   std::array<F, kMaxUvSets> uv_per_metre{};  // the root of the ratio of areas; of shapes by measure_shape_uvs, else 0
   F footprint = 0;                           // metres across, of what the hit stands for; 0: a point
+  TextureLookup<F>* lookup = nullptr;        // see BasicSurfaceInputs
 
   [[nodiscard]] BasicSurfaceInputs<F> inputs() const {
-    return {uvs.data(), uv_count, color, footprint, uv_per_metre.data()};
+    return {uvs.data(), uv_count, color, footprint, uv_per_metre.data(), lookup};
   }
 };
 using SurfacePoint = BasicSurfacePoint<float>;

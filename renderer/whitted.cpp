@@ -272,7 +272,7 @@ class Whitted {
     const IntOf<ShadingLanes> number = numbers.load();
     const auto load = [&](const Lanes<float>& row) { return gather<ShadingLanes>(row.data(), number); };
     const auto load_number = [&](const Lanes<uint32_t>& row) {
-      return load_at<UintOf<ShadingLanes>>(address_of(row.data(), number));
+      return gather<UintOf<ShadingLanes>>(row.data(), number);
     };
     const ShadingLanes t = load(found.t);
     work.hits.origin.store({load(rays.origin.x), load(rays.origin.y), load(rays.origin.z)});
@@ -378,6 +378,8 @@ class Whitted {
     const Material& material = scene_.materials[surface.material];
     if (!scene_.images.empty() && material.model != ShadingModel::phong)  // which knows no mipmaps
       measure_shape_uvs(scene_, ids, surface.footprint, time_of(path.pixel), surface);
+    TextureLookup<float> lookup;
+    surface.lookup = &lookup;
     const SurfaceInputs inputs = surface.inputs();
     arena_.clock.enter_part(Phase::textures);
     const float alpha = material.alpha_mode == AlphaMode::blend ? coverage(material, table_, inputs) : 1.0f;
