@@ -83,6 +83,28 @@ template <class F>
     return load(addresses);
 }
 
+/// The three numbers of 32 bits from each address on. A load for each lane and a transposition take a quarter of the
+/// time of gathers.
+template <class N>
+[[nodiscard]] std::array<N, 3> load_triples_at(const AddressOf<N>& addresses) {
+#if defined __AVX512F__ && defined __AVX512VL__ && defined __GLIBCXX__
+  if constexpr (kWidthOf<N> == 16) {
+    LaneArray<AddressOf<N>> at;
+    at.store(addresses);
+    const auto triple = [&](size_t k) { return _mm_maskz_loadu_epi32(0b111, reinterpret_cast<const void*>(at[k])); };
+    const auto every_fourth = [&](size_t k) {
+      const __m512i first = _mm512_inserti32x4(_mm512_castsi128_si512(triple(k)), triple(k + 4), 1);
+      return _mm512_inserti32x4(_mm512_inserti32x4(first, triple(k + 8), 2), triple(k + 12), 3);
+    };
+    const __m512i a = every_fourth(0), b = every_fourth(1), c = every_fourth(2), d = every_fourth(3);
+    const __m512i ab = _mm512_unpacklo_epi32(a, b), cd = _mm512_unpacklo_epi32(c, d);  // x and y
+    return {std::bit_cast<N>(_mm512_unpacklo_epi64(ab, cd)), std::bit_cast<N>(_mm512_unpackhi_epi64(ab, cd)),
+            std::bit_cast<N>(_mm512_unpacklo_epi64(_mm512_unpackhi_epi32(a, b), _mm512_unpackhi_epi32(c, d)))};
+  }
+#endif
+  return {load_at<N>(addresses), load_at<N>(addresses + AddressOf<N>(4)), load_at<N>(addresses + AddressOf<N>(8))};
+}
+
 /// table[index] in each lane.
 template <class N>
 [[nodiscard]] N gather(const ScalarOf<N>* table, const IntOf<N>& index) {

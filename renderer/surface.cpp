@@ -335,19 +335,29 @@ class LaneParts {
     for (size_t k = 0; k < kWidthOf<F>; ++k) parts_[k] = part(k), one_part_ = one_part_ && parts_[k] == parts_[0];
   }
 
-  /// The address of element `index` of the array `of(part)` in each lane.
+  /// An array in each lane.
+  struct Rows {
+    AddressOf<F> first;
+    size_t stride;
+
+    [[nodiscard]] AddressOf<F> operator[](const IntOf<F>& index) const {
+      const AddressOf<F> number = convert<AddressOf<F>>(index) & AddressOf<F>(0xFFFFFFFFu);  // they are unsigned
+      return first + number * AddressOf<F>(stride);
+    }
+  };
+  /// The array `of(part)`.
   template <class Of>
-  [[nodiscard]] AddressOf<F> element(const Of& of, const IntOf<F>& index) const {
+  [[nodiscard]] Rows rows(const Of& of) const {
     using T = typename std::remove_cvref_t<decltype(of(*parts_[0]))>::value_type;
     const auto base = [&](const TriangleMesh* part) { return uint64_t(reinterpret_cast<uintptr_t>(of(*part).data())); };
-    AddressOf<F> first(base(parts_[0]));
-    if (!one_part_) {
-      LaneArray<AddressOf<F>> bases;
-      for (size_t k = 0; k < kWidthOf<F>; ++k) bases[k] = base(parts_[k]);
-      first = bases.load();
-    }
-    const AddressOf<F> number = convert<AddressOf<F>>(index) & AddressOf<F>(0xFFFFFFFFu);  // they are unsigned
-    return first + number * AddressOf<F>(sizeof(T));
+    if (one_part_) return {AddressOf<F>(base(parts_[0])), sizeof(T)};
+    LaneArray<AddressOf<F>> bases;
+    for (size_t k = 0; k < kWidthOf<F>; ++k) bases[k] = base(parts_[k]);
+    return {bases.load(), sizeof(T)};
+  }
+  template <class T>
+  [[nodiscard]] Rows rows(T TriangleMesh::*member) const {
+    return rows([=](const TriangleMesh& part) -> const auto& { return part.*member; });
   }
 
   [[nodiscard]] Vec3<F> polygon_normals(const LaneArray<IntOf<F>>& triangles) const {
@@ -366,39 +376,42 @@ template <class N>
 N component(const AddressOf<F>& element, size_t k) {
   return load_at<N>(element + AddressOf<F>(4 * k));
 }
+Vec2<F> load_vec2(const AddressOf<F>& element) {
+  const AddressOf<F> both = load_words_at<F>(element);
+  const auto half = [](const AddressOf<F>& word) { return std::bit_cast<F>(convert<IntOf<F>>(word)); };
+  return {half(both), half(both >> 32)};
+}
 Vec3<F> load_vec3(const AddressOf<F>& element) {
-  return {component<F>(element, 0), component<F>(element, 1), component<F>(element, 2)};
+  const auto [x, y, z] = load_triples_at<F>(element);
+  return {x, y, z};
 }
 
 Corners<F> lane_corners(const LaneParts& parts, const Attributes& has, const LaneArray<IntOf<F>>& triangles) {
-  const AddressOf<F> corner_numbers = parts.element(
-      [](const TriangleMesh& part) -> const auto& { return part.triangles; }, triangles.load());
   Corners<F> c;
   if (has.polygon_normals) c.n_polygon = parts.polygon_normals(triangles);
-  for (size_t k = 0; k < 3; ++k) {
-    const auto corner = component<IntOf<F>>(corner_numbers, k);
-    const auto of = [&](auto member) {
-      return parts.element(
-          [&](const TriangleMesh& part) -> const auto& { return part.*member; }, corner);
-    };
-    c.p_object[k] = load_vec3(of(&TriangleMesh::positions));
-    if (has.normals) c.n_object[k] = load_vec3(of(&TriangleMesh::normals));
-    if (has.tangents) {
-      const AddressOf<F> tangent = of(&TriangleMesh::tangents);
-      c.t_object[k] = load_vec3(tangent);
-      if (k == 0) c.handedness = component<F>(tangent, 3);
-    }
-    for (size_t i = 0; i < has.uv_sets; ++i) {
-      const AddressOf<F> uv = parts.element(
-          [&](const TriangleMesh& part) -> const auto& { return part.uvs[i]; }, corner);
-      c.uvs[k][i] = {component<F>(uv, 0), component<F>(uv, 1)};
-    }
-    if (has.colors) {
-      const AddressOf<F> color = of(&TriangleMesh::colors);
+  const auto corner = load_triples_at<IntOf<F>>(parts.rows(&TriangleMesh::triangles)[triangles.load()]);
+  const auto for_each_corner = [&](const LaneParts::Rows& rows, const auto& visit) {
+    for (size_t k = 0; k < 3; ++k) visit(k, rows[corner[k]]);
+  };
+  using Address = AddressOf<F>;
+  for_each_corner(parts.rows(&TriangleMesh::positions),
+                  [&](size_t k, const Address& p) { c.p_object[k] = load_vec3(p); });
+  if (has.normals)
+    for_each_corner(parts.rows(&TriangleMesh::normals),
+                    [&](size_t k, const Address& n) { c.n_object[k] = load_vec3(n); });
+  if (has.tangents)
+    for_each_corner(parts.rows(&TriangleMesh::tangents), [&](size_t k, const Address& t) {
+      c.t_object[k] = load_vec3(t);
+      if (k == 0) c.handedness = component<F>(t, 3);
+    });
+  for (size_t i = 0; i < has.uv_sets; ++i)
+    for_each_corner(parts.rows([&](const TriangleMesh& part) -> const auto& { return part.uvs[i]; }),
+                    [&](size_t k, const Address& uv) { c.uvs[k][i] = load_vec2(uv); });
+  if (has.colors)
+    for_each_corner(parts.rows(&TriangleMesh::colors), [&](size_t k, const Address& color) {
       const Vec3<F> rgb = load_vec3(color);
       c.colors[k] = {{rgb.x, rgb.y, rgb.z}, component<F>(color, 3)};
-    }
-  }
+    });
   return c;
 }
 
