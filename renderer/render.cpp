@@ -111,6 +111,33 @@ void push_moving_camera_rays(const Camera& camera, const RenderOptions& options,
   }
 }
 
+/// One sample of each pixel of a cell, whose rows are kCellSize long.
+struct CellSample {
+  std::array<Rgb, kCellSize * kCellSize> radiance;
+  std::array<float, kCellSize * kCellSize> background;  // how much of it is seen
+};
+
+struct CellSums {
+  std::array<Vec3d, kCellSize * kCellSize> radiance{};
+  std::array<double, kCellSize * kCellSize> background{};
+  std::array<uint32_t, kCellSize * kCellSize> count{};
+
+  /// But what is not finite; how many those are.
+  uint32_t add(const CellSample& sample) {
+    uint32_t dropped = 0;
+    for (size_t p = 0; p < count.size(); ++p) {
+      const Rgb& c = sample.radiance[p];
+      if (!is_finite(c)) {
+        ++dropped;
+        continue;
+      }
+      radiance[p] += Vec3d(c.r, c.g, c.b), background[p] += double(sample.background[p]);
+      ++count[p];
+    }
+    return dropped;
+  }
+};
+
 struct CellWorker {
   const Scene& scene;
   const AcceleratedScene& accelerated;
@@ -171,37 +198,29 @@ struct CellWorker {
   }
 
   [[nodiscard]] bool whitted(const Cell& cell, WaveArena& arena) const {
-    std::array<Rgb, kCellSize * kCellSize> radiance;
-    std::array<float, kCellSize * kCellSize> background;
-    std::array<Vec3d, kCellSize * kCellSize> sum{};
-    std::array<double, kCellSize * kCellSize> background_sum{};
-    std::array<uint32_t, kCellSize * kCellSize> count{};
-    for (int sample = 0; sample < options.samples; ++sample) {
-      if (control.stop) return false;
-      arena.clock.enter(Phase::generation);
-      radiance.fill(Rgb(0.0f)), background.fill(0.0f);
-      (moving ? push_moving_camera_rays : push_camera_rays)(camera, options, cell, uint32_t(sample), arena);
-      if (arena.observer) arena.observer->begin_sample(sample, arena.pending, arena.time_of_pixel);
-      trace_whitted(scene, accelerated, groups, options, arena, radiance.data(), background.data());
-      arena.clock.enter(Phase::film);
-      for (size_t p = 0; p < radiance.size(); ++p) {
-        if (!is_finite(radiance[p])) {
-          ++control.dropped_samples;
-          continue;
-        }
-        sum[p] += Vec3d(radiance[p].r, radiance[p].g, radiance[p].b);
-        background_sum[p] += double(background[p]);
-        ++count[p];
+    CellSample sample;
+    uint32_t dropped = 0;
+    if (options.samples == 1) {
+      if (!trace_sample(0, cell, arena, sample)) return false;
+      write(cell, [&](size_t p) {
+        const bool counts = is_finite(sample.radiance[p]);
+        dropped += !counts;
+        return counts ? Rgba{sample.radiance[p], opacity_before(double(sample.background[p]))} : Rgba{Rgb(0.0f), 0};
+      });
+    } else {
+      CellSums sums;
+      for (int k = 0; k < options.samples; ++k) {
+        if (!trace_sample(k, cell, arena, sample)) return false;
+        dropped += sums.add(sample);
       }
+      write(cell, [&](size_t p) {
+        const double scale = sums.count[p] ? 1.0 / sums.count[p] : 0;
+        const Vec3d mean = sums.radiance[p] * scale;
+        return Rgba{{float(mean.x), float(mean.y), float(mean.z)},
+                    sums.count[p] ? opacity_before(sums.background[p] * scale) : 0.0f};
+      });
     }
-    for (uint32_t y = 0; y < uint32_t(cell.y1 - cell.y0); ++y)
-      for (uint32_t x = 0; x < uint32_t(cell.x1 - cell.x0); ++x) {
-        const uint32_t p = y * kCellSize + x;
-        float* out = pixel_at(result.color, cell, p);
-        const double scale = count[p] ? 1.0 / count[p] : 0;
-        out[0] = float(sum[p].x * scale), out[1] = float(sum[p].y * scale), out[2] = float(sum[p].z * scale);
-        out[3] = count[p] ? std::max(0.0f, float(1 - background_sum[p] * scale)) : 0.0f;
-      }
+    if (dropped > 0) control.dropped_samples += dropped;
     control.camera_rays += arena.rays_by_kind[0] + arena.rays_by_kind[3];
     control.mirror_rays += arena.rays_by_kind[1], control.refracted_rays += arena.rays_by_kind[2];
     control.shadow_rays += arena.shadow_rays;
@@ -209,9 +228,29 @@ struct CellWorker {
     return true;
   }
 
-  template <class T>
-  T* pixel_at(PixelBuffer<T>& image, const Cell& cell, uint32_t p) const {
-    return image.at(cell.x0 - x0 + int(p % kCellSize), cell.y0 - y0 + int(p / kCellSize));
+  [[nodiscard]] bool trace_sample(int k, const Cell& cell, WaveArena& arena, CellSample& sample) const {
+    if (control.stop) return false;
+    arena.clock.enter(Phase::generation);
+    sample.radiance.fill(Rgb(0.0f)), sample.background.fill(0.0f);
+    (moving ? push_moving_camera_rays : push_camera_rays)(camera, options, cell, uint32_t(k), arena);
+    if (arena.observer) arena.observer->begin_sample(k, arena.pending, arena.time_of_pixel);
+    trace_whitted(scene, accelerated, groups, options, arena, sample.radiance.data(), sample.background.data());
+    arena.clock.enter(Phase::film);
+    return true;
+  }
+
+  /// How much of a pixel is covered before so much of the background.
+  static float opacity_before(double background) { return std::max(0.0f, float(1 - background)); }
+
+  template <class PixelOf>
+  void write(const Cell& cell, const PixelOf& pixel) const {
+    for (uint32_t y = 0; y < uint32_t(cell.y1 - cell.y0); ++y) {
+      float* out = result.color.at(cell.x0 - x0, cell.y0 - y0 + int(y));
+      for (uint32_t x = 0; x < uint32_t(cell.x1 - cell.x0); ++x, out += 4) {
+        const Rgba c = pixel(y * kCellSize + x);
+        out[0] = c.rgb.r, out[1] = c.rgb.g, out[2] = c.rgb.b, out[3] = c.a;
+      }
+    }
   }
 };
 

@@ -666,9 +666,7 @@ class Whitted {
   /// Light by light, so that neighbours run side by side.
   void trace_shadows() {
     if (shadows_ == 0) return;
-    ShadowWave& all = arena_.shadow;
-    all.clear();
-    for (ShadowWave& wave : arena_.shadow_by_light) all.append(wave), wave.clear();
+    ShadowWave& all = gather_shadows();
     arena_.shadow_rays += std::exchange(shadows_, 0);
     set_times(all.rays, [&](size_t i) { return all.pixel[i]; });
     log(coherence_ == Coherence::coherent ? WaveKind::camera_shadow : WaveKind::bounced_shadow, all.rays);
@@ -681,6 +679,13 @@ class Whitted {
       tell([&](TraceObserver& observer) { observer.answer(all.number[i], arena_.visible[i], light); });
     }
     tell([&](TraceObserver& observer) { observer.answered(); });
+    all.clear();
+  }
+
+  ShadowWave& gather_shadows() {
+    if (arena_.shadow_by_light.size() == 1) return arena_.shadow_by_light[0];
+    for (ShadowWave& wave : arena_.shadow_by_light) arena_.shadow.append(wave), wave.clear();
+    return arena_.shadow;
   }
 
   const Scene& scene_;
