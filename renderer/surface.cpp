@@ -415,15 +415,21 @@ Corners<F> lane_corners(const LaneParts& parts, const Attributes& has, const Lan
   return c;
 }
 
-Affine3<D> lane_maps(const Geometry& geometry, const LaneHits& hits) {
-  std::array<Affine3d, kWidthOf<F>> maps;
-  for (size_t k = 0; k < kWidthOf<F>; ++k) maps[k] = geometry.mesh_instances.world_from_object(hits.ids[k].object);
+Affine3<D> lane_maps(const std::array<const Affine3d*, kWidthOf<F>>& maps) {
   const auto column = [&](Vec3d Affine3d::*of) {
     Vec3Array<D> all;
-    for (size_t k = 0; k < kWidthOf<F>; ++k) all.set(k, maps[k].*of);
+    for (size_t k = 0; k < kWidthOf<F>; ++k) all.set(k, maps[k]->*of);
     return all.load();
   };
   return {column(&Affine3d::x), column(&Affine3d::y), column(&Affine3d::z), column(&Affine3d::origin)};
+}
+
+Affine3<D> lane_maps(const Geometry& geometry, const LaneHits& hits) {
+  std::array<Affine3d, kWidthOf<F>> maps;
+  std::array<const Affine3d*, kWidthOf<F>> where;
+  for (size_t k = 0; k < kWidthOf<F>; ++k)
+    maps[k] = geometry.mesh_instances.world_from_object(hits.ids[k].object), where[k] = &maps[k];
+  return lane_maps(where);
 }
 
 Affine3<D> broadcast(const Affine3d& m) {
@@ -483,11 +489,83 @@ void set_mesh_points(const Scene& scene, const LaneHits& hits, const Attributes&
   place(triangles.corners, has, u, v, triangles.map(), triangles.roundings, s);
 }
 
-void set_shape_points(const Scene& scene, const LaneHits& hits, bool has_textures, BasicSurfacePoint<F>& s) {
+constexpr uint32_t kEveryLane = (1u << kWidthOf<F>)-1;
+
+/// Sphere by sphere.
+struct LaneSpheres {
+  D radius;
+
+  template <class ShapeOf>
+  explicit LaneSpheres(const ShapeOf& shape_of)
+      : radius([&](auto k) { return std::get_if<Sphere>(&shape_of(k))->radius; }) {}
+
+  [[nodiscard]] uint32_t doubtful(const LaneHits&) const { return 0; }
+  [[nodiscard]] Vec3<D> projected(const Vec3<D>& p) const { return normalize(p) * radius; }
+  [[nodiscard]] static Vec3<D> normal(const Vec3<D>& p) { return normalize(p); }
+};
+
+/// Quadric by quadric; caps and double planes are left to be done one by one.
+struct LaneQuadrics {
+  std::array<D, 10> coefficients;
+
+  template <class ShapeOf>
+  explicit LaneQuadrics(const ShapeOf& shape_of) {
+    for (size_t c = 0; c < coefficients.size(); ++c)
+      coefficients[c] = D([&](auto k) { return std::get_if<Quadric>(&shape_of(k))->coefficients[c]; });
+  }
+
+  [[nodiscard]] uint32_t doubtful(const LaneHits& hits) const {
+    uint32_t lanes = lane_bits(may_be_square(coefficients));
+    for (size_t k = 0; k < kWidthOf<F>; ++k) lanes |= uint32_t(int(hits.ids[k].part) != kWallFace) << k;
+    return lanes;
+  }
+  [[nodiscard]] Vec3<D> projected(const Vec3<D>& p) const { return project_to_wall(coefficients, p); }
+  [[nodiscard]] Vec3<D> normal(const Vec3<D>& p) const {
+    return scaled_to_unit(quadric_half_gradient(coefficients, p));
+  }
+};
+
+/// What `shape_point` does, for shapes of one kind, but for texture coordinates. Answers the lanes that are left.
+template <class LaneShapes, class ShapeOf>
+uint32_t set_points_on(const LaneHits& hits, const Affine3<D>& m, const ShapeOf& shape_of, BasicSurfacePoint<F>& s) {
+  const LaneShapes shapes(shape_of);
+  const Vec3<D> along = convert<D>(hits.direction.load()) * convert<D>(hits.t.load());
+  const Vec3<D> p = shapes.projected(transform_vector(inverse(m), convert<D>(hits.origin.load()) - m.origin + along));
+  s.p_world = transform_point(m, p);
+  s.ng_world = s.ns_world = convert<F>(normalize(outer_normal(m, determinant(m), shapes.normal(p))));
+  const Vec3<D>& w = s.p_world;
+  s.offset = convert<F>(D(D(2 * kUlp) * larger(absolute(w.x), larger(absolute(w.y), absolute(w.z)))));
+  return shapes.doubtful(hits);
+}
+
+uint32_t set_points_in_lanes(const Scene& scene, const LaneHits& hits, BasicSurfacePoint<F>& s) {
+  const Geometry& geometry = scene.geometry;
+  std::array<const Shape*, kWidthOf<F>> shapes;
+  std::array<const Affine3d*, kWidthOf<F>> maps;
+  bool alike = true;
+  for (size_t k = 0; k < kWidthOf<F>; ++k) {
+    const ShapeInstance& placed = shape_instance(geometry, hits.ids[k].object);
+    shapes[k] = &geometry.shapes[placed.shape], maps[k] = &placed.world_from_object;
+    alike = alike && shapes[k]->index() == shapes[0]->index();
+  }
+  const bool spheres = std::holds_alternative<Sphere>(*shapes[0]),
+             quadrics = std::holds_alternative<Quadric>(*shapes[0]);
+  if (!alike || !(spheres || quadrics)) return kEveryLane;
+  const auto shape_of = [&](size_t k) -> const Shape& { return *shapes[k]; };
+  const Affine3<D> m = lane_maps(maps);
+  return spheres ? set_points_on<LaneSpheres>(hits, m, shape_of, s) : set_points_on<LaneQuadrics>(hits, m, shape_of, s);
+}
+
+void set_points_one_by_one(const Scene& scene, const LaneHits& hits, bool has_textures, uint32_t lanes,
+                           BasicSurfacePoint<F>& s) {
   Vec3Array<D> p;
   LaneArray<F> offset, bitangent_sign, u, v;
   Vec3Array<F> ng, ns, tangent;
-  for (size_t k = 0; k < kWidthOf<F>; ++k) {
+  p.store(s.p_world), offset.store(s.offset), ng.store(s.ng_world), ns.store(s.ns_world);
+  tangent.store(s.tangent_world), bitangent_sign.store(s.bitangent_sign);
+  u.store(s.uvs[0].x), v.store(s.uvs[0].y);
+  for (; lanes; lanes &= lanes - 1) {
+    const auto k = size_t(std::countr_zero(lanes));
     const Rayf ray{hits.origin.get(k), hits.direction.get(k)};
     const SurfacePoint one = shape_point(scene, ray, hits.ids[k], hits.t[k], 0, has_textures);
     p.set(k, one.p_world), ng.set(k, one.ng_world), ns.set(k, one.ns_world), tangent.set(k, one.tangent_world);
@@ -498,6 +576,11 @@ void set_shape_points(const Scene& scene, const LaneHits& hits, bool has_texture
   s.ng_world = ng.load(), s.ns_world = ns.load(), s.tangent_world = tangent.load();
   s.bitangent_sign = bitangent_sign.load();
   s.uvs[0] = {u.load(), v.load()};
+}
+
+void set_shape_points(const Scene& scene, const LaneHits& hits, bool has_textures, BasicSurfacePoint<F>& s) {
+  const uint32_t left = has_textures ? kEveryLane : set_points_in_lanes(scene, hits, s);
+  if (left != 0) set_points_one_by_one(scene, hits, has_textures, left, s);
   s.uv_count = 1;
 }
 

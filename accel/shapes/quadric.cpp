@@ -5,19 +5,6 @@
 namespace alhazen {
 namespace {
 
-double value(const Quadric& quadric, const Vec3d& p) {
-  const auto& q = quadric.coefficients;
-  return p.x * (q[0] * p.x + 2 * (q[3] * p.y + q[4] * p.z + q[6])) + p.y * (q[1] * p.y + 2 * (q[5] * p.z + q[7])) +
-         p.z * (q[2] * p.z + 2 * q[8]) + q[9];
-}
-
-/// Half of ∇f.
-Vec3d half_gradient(const Quadric& quadric, const Vec3d& p) {
-  const auto& q = quadric.coefficients;
-  return {q[0] * p.x + q[3] * p.y + q[4] * p.z + q[6], q[3] * p.x + q[1] * p.y + q[5] * p.z + q[7],
-          q[4] * p.x + q[5] * p.y + q[2] * p.z + q[8]};
-}
-
 /// The row of A ... F with the largest entry: where f is the square of a plane, that plane's normal.
 Vec3d largest_row(const Quadric& quadric) {
   const auto& q = quadric.coefficients;
@@ -131,8 +118,8 @@ double reach_from(const Quadric& quadric, const Vec3d& p_object) noexcept {
       std::min(side * q[0] - xy - xz, std::min(side * q[1] - xy - yz, side * q[2] - xz - yz)) - form * rounding;
   if (!(least > 0)) return HUGE_VAL;
   // f(p + s) = s'Qs + 2 g·s + f(p) <= 0 only for least |s|² - 2 |g| |s| + f(p) <= 0.
-  const double g = length(half_gradient(quadric, p_object)) + (form * size + linear) * rounding;
-  const double f = side * value(quadric, p_object) - ((form * size + 2 * linear) * size + std::abs(q[9])) * rounding;
+  const double g = length(quadric_half_gradient(q, p_object)) + (form * size + linear) * rounding;
+  const double f = side * quadric_value(q, p_object) - ((form * size + 2 * linear) * size + std::abs(q[9])) * rounding;
   return (g + std::sqrt(std::max(g * g - least * f, 0.0))) / least * (1 + rounding);
 }
 
@@ -142,14 +129,7 @@ Vec3d project(const Quadric& quadric, const Vec3d& p_object, int face) noexcept 
     component(p, face / 2) = (face & 1 ? quadric.box.upper : quadric.box.lower)[face / 2];
     return p;
   }
-  for (int step = 0; step < 2; ++step) {  // Newton along the gradient
-    const Vec3d g = half_gradient(quadric, p);
-    const double squared = dot(g, g), f = value(quadric, p);
-    const Vec3d moved = p - g * (f / (2 * squared));
-    if (!(squared > 0) || !is_finite(moved)) break;
-    p = moved;
-  }
-  return p;
+  return project_to_wall(quadric.coefficients, p);
 }
 
 Vec3d normal(const Quadric& quadric, const Vec3d& p_object, int face) noexcept {
@@ -157,17 +137,11 @@ Vec3d normal(const Quadric& quadric, const Vec3d& p_object, int face) noexcept {
     const double side = face & 1 ? 1 : -1;
     return face < 2 ? Vec3d{side, 0, 0} : face < 4 ? Vec3d{0, side, 0} : Vec3d{0, 0, side};
   }
-  const auto unit = [](const Vec3d& v) {
-    const double size = max_component(abs(v));
-    return size > 0 ? normalize(v / size) : v;
-  };
-  // Where f is a square its gradient vanishes on the whole surface, up to rounding.
-  const auto& q = quadric.coefficients;
-  const bool square = q[0] * q[1] == q[3] * q[3] && q[0] * q[2] == q[4] * q[4] && q[1] * q[2] == q[5] * q[5];
-  const Vec3d g = half_gradient(quadric, p_object), row = largest_row(quadric);
-  if (square && max_component(abs(g)) <= 0x1p-20 * max_component(abs(row)) * (1 + max_component(abs(p_object))))
-    return unit(row);
-  return unit(g);
+  const Vec3d g = quadric_half_gradient(quadric.coefficients, p_object), row = largest_row(quadric);
+  if (may_be_square(quadric.coefficients) &&
+      max_component(abs(g)) <= 0x1p-20 * max_component(abs(row)) * (1 + max_component(abs(p_object))))
+    return scaled_to_unit(row);
+  return scaled_to_unit(g);
 }
 
 Vec2f texture_coordinates(const Quadric& quadric, const Vec3d& p, int) noexcept {

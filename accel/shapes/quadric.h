@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "accel/shapes/quadric_body.h"
+#include "core/lane_vec.h"
 #include "core/ray.h"
 
 namespace alhazen {
@@ -16,6 +17,50 @@ struct Quadric {
   bool solid = false;                     // { f <= 0 } within the box is a closed body
   bool whole = false;                     // an ellipsoid that the box does not cut: said so, it costs less
 };
+
+/// f at a point; N is double or lanes of doubles, each with its quadric.
+template <class N>
+[[nodiscard]] N quadric_value(const std::array<N, 10>& q, const Vec3<N>& p) {
+  return p.x * (q[0] * p.x + N(2) * (q[3] * p.y + q[4] * p.z + q[6])) +
+         p.y * (q[1] * p.y + N(2) * (q[5] * p.z + q[7])) + p.z * (q[2] * p.z + N(2) * q[8]) + q[9];
+}
+
+/// Half of ∇f.
+template <class N>
+[[nodiscard]] Vec3<N> quadric_half_gradient(const std::array<N, 10>& q, const Vec3<N>& p) {
+  return {q[0] * p.x + q[3] * p.y + q[4] * p.z + q[6], q[3] * p.x + q[1] * p.y + q[5] * p.z + q[7],
+          q[4] * p.x + q[5] * p.y + q[2] * p.z + q[8]};
+}
+
+/// A point near { f = 0 } put onto it by two of Newton's steps along the gradient.
+template <class N>
+[[nodiscard]] Vec3<N> project_to_wall(const std::array<N, 10>& q, Vec3<N> p) {
+  const auto finite = [](const N& x) { return x - x == N(0); };
+  MaskOf<N> goes_on(true);
+  for (int step = 0; step < 2; ++step) {
+    const Vec3<N> g = quadric_half_gradient(q, p);
+    const N squared = dot(g, g);
+    const Vec3<N> moved = p - g * N(quadric_value(q, p) / (N(2) * squared));
+    goes_on = goes_on && squared > N(0) && finite(moved.x) && finite(moved.y) && finite(moved.z);
+    p = {select(goes_on, moved.x, p.x), select(goes_on, moved.y, p.y), select(goes_on, moved.z, p.z)};
+  }
+  return p;
+}
+
+/// Whether f may be the square of a plane, up to a factor: its gradient then vanishes on the whole surface.
+template <class N>
+[[nodiscard]] MaskOf<N> may_be_square(const std::array<N, 10>& q) {
+  return q[0] * q[1] == q[3] * q[3] && q[0] * q[2] == q[4] * q[4] && q[1] * q[2] == q[5] * q[5];
+}
+
+/// `v` over its length, also where its square underflows; 0 stays 0.
+template <class N>
+[[nodiscard]] Vec3<N> scaled_to_unit(const Vec3<N>& v) {
+  const N size = larger(absolute(v.x), larger(absolute(v.y), absolute(v.z)));
+  const MaskOf<N> any = size > N(0);
+  const Vec3<N> unit = normalize(v / select(any, size, N(1)));
+  return {select(any, unit.x, v.x), select(any, unit.y, v.y), select(any, unit.z, v.z)};
+}
 
 /// The box of an ellipsoid's surface, a little enlarged (its centre alone where nothing of it is real); none where
 /// A ... F is not definite.
