@@ -94,6 +94,7 @@ struct Subject {
   Camera camera;
   std::vector<Opacity> opacity;
   std::unique_ptr<AcceleratedScene> accelerated;
+  RenderResult picture;  // of the frame before
   FrameBench costs;
 };
 
@@ -120,7 +121,7 @@ std::unique_ptr<Subject> prepare(const std::string& file, const RenderOptions& o
   RenderControl control;
   const auto render_start = Clock::now();
   const auto before = std::chrono::duration<double>(render_start - start).count();
-  (void)render(scene, *subject->accelerated, subject->camera, options, control);
+  subject->picture = render(scene, *subject->accelerated, subject->camera, options, control);
   const auto first_tile = Clock::time_point(std::chrono::nanoseconds(control.first_tile_ns));
   costs.first_tile_s = before + std::chrono::duration<double>(first_tile - render_start).count();
   costs.peak_bytes = peak_memory();
@@ -128,10 +129,11 @@ std::unique_ptr<Subject> prepare(const std::string& file, const RenderOptions& o
 }
 
 /// One frame's wall time; its phases and rays go to `result`.
-double measure_frame(const Subject& subject, FrameBench& result) {
+double measure_frame(Subject& subject, FrameBench& result) {
   RenderControl control;
   const auto start = Clock::now();
-  (void)render(subject.loaded.scene, *subject.accelerated, subject.camera, result.options, control);
+  subject.picture = render(subject.loaded.scene, *subject.accelerated, subject.camera, result.options, control,
+                           std::move(subject.picture));
   const double seconds = seconds_since(start);
   result.rays = ray_counts(control);
   for (size_t k = 0; k < kPhases; ++k) result.phase_s[k] += 1e-9 * double(control.phase_ns[k]) / result.threads;
@@ -139,11 +141,12 @@ double measure_frame(const Subject& subject, FrameBench& result) {
 }
 
 /// How one more frame, whose clock splits shading and takes time for it, divides it.
-void split_shading(const Subject& subject, FrameBench& result) {
+void split_shading(Subject& subject, FrameBench& result) {
   constexpr std::array kParts{Phase::surface_points, Phase::textures, Phase::shading};
   RenderControl control;
   control.splits_shading = true;
-  (void)render(subject.loaded.scene, *subject.accelerated, subject.camera, result.options, control);
+  subject.picture = render(subject.loaded.scene, *subject.accelerated, subject.camera, result.options, control,
+                           std::move(subject.picture));
   double all = 0;
   for (const Phase part : kParts) all += double(control.phase_ns[size_t(part)]);
   const double shading = result.phase_s[size_t(Phase::shading)];
@@ -152,14 +155,15 @@ void split_shading(const Subject& subject, FrameBench& result) {
       result.phase_s[size_t(part)] = shading * double(control.phase_ns[size_t(part)]) / all;
 }
 
-FrameBench measure(const Subject& subject, const RenderOptions& options, int threads, int repeats) {
+FrameBench measure(Subject& subject, const RenderOptions& options, int threads, int repeats) {
   FrameBench result = subject.costs;
   result.options = options, result.options.threads = result.threads = threads;
   tbb::task_arena arena(threads);
   WaveLog log;
   RenderControl control;
   control.log = &log;
-  (void)render(subject.loaded.scene, *subject.accelerated, subject.camera, result.options, control);
+  subject.picture = render(subject.loaded.scene, *subject.accelerated, subject.camera, result.options, control,
+                           std::move(subject.picture));
   result.bare = find_best_calls(*subject.accelerated, log, arena);
   BareCalls best;
   for (size_t k = 0; k < kWaveKinds; ++k) best[k] = result.bare[k].best;

@@ -259,8 +259,15 @@ Cell cell_at(int cx, int cy, const RenderOptions& options) {
           std::min((cy + 1) * kCellSize, options.height)};
 }
 
-ColorImage empty_picture(int width, int height) {
-  return {width, height, {"R", "G", "B", "A"}, std::vector<float>(size_t(width) * size_t(height) * 4, 0.0f)};
+/// All pixels `value`, in the memory of others.
+template <class T>
+PixelBuffer<T> blank(int width, int height, std::vector<std::string> channels, T value, std::vector<T> memory) {
+  memory.assign(size_t(width) * size_t(height) * channels.size(), value);
+  return {width, height, std::move(channels), std::move(memory)};
+}
+
+ColorImage empty_picture(int width, int height, std::vector<float> memory) {
+  return blank(width, height, {"R", "G", "B", "A"}, 0.0f, std::move(memory));
 }
 
 }  // namespace
@@ -272,14 +279,14 @@ SurfaceFilter surface_filter(const Scene& scene, std::vector<Opacity>& opacities
 }
 
 RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, const Camera& camera,
-                    const RenderOptions& options, RenderControl& control) {
+                    const RenderOptions& options, RenderControl& control, RenderResult used) {
   RenderResult result;
   const size_t pixels = size_t(options.width) * size_t(options.height);
   if (options.integrator == Integrator::signature) {
-    result.ids = {
-        options.width, options.height, {"node", "primitive", "material"}, std::vector<uint32_t>(pixels * 3, kNone)};
+    result.ids =
+        blank(options.width, options.height, {"node", "primitive", "material"}, kNone, std::move(used.ids.pixels));
   } else {
-    result.color = empty_picture(options.width, options.height);
+    result.color = empty_picture(options.width, options.height, std::move(used.color.pixels));
     result.layers = empty_layers(scene, options.layers, options.width, options.height);
   }
   const ShadingGroups groups(scene);
@@ -314,7 +321,7 @@ CellPicture render_cell(const Scene& scene, const AcceleratedScene& accelerated,
                         const RenderOptions& options, RenderControl& control, int x, int y, TraceObserver& observer) {
   const Cell cell = cell_at(x / kCellSize, y / kCellSize, options);
   RenderResult result;
-  result.color = empty_picture(cell.x1 - cell.x0, cell.y1 - cell.y0);
+  result.color = empty_picture(cell.x1 - cell.x0, cell.y1 - cell.y0, {});
   WaveArena arena;
   arena.observer = &observer;
   RenderOptions alone = options;  // the observer is told, not the layers

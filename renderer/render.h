@@ -53,9 +53,10 @@ struct RenderResult {
 /// The filter by which `AcceleratedScene` asks this scene's materials; `scene` must outlive it, `opacity` is filled.
 [[nodiscard]] SurfaceFilter surface_filter(const Scene& scene, std::vector<Opacity>& opacity);
 
-/// Traces the picture. The same arguments give the same bits, whatever `threads` and `tile_size` are.
+/// Traces the picture. The same arguments give the same bits, whatever `threads` and `tile_size` are. The memory of
+/// `used`, an earlier result, becomes that of the new one's picture: where frame follows frame, none is asked for.
 [[nodiscard]] RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, const Camera& camera,
-                                  const RenderOptions& options, RenderControl& control);
+                                  const RenderOptions& options, RenderControl& control, RenderResult used = {});
 
 class TraceObserver;
 
