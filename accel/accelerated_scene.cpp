@@ -228,9 +228,9 @@ struct AcceleratedScene::Traversal {
     const auto grouped = (entry & U(kInGroup)) != U(0);
     const U known = select(grouped, U(0), entry);
     const U object =
-        select(grouped, entry & U(~kInGroup), gather<U>(impl.object_of_top.data(), std::bit_cast<IntOf<U>>(known)));
+        select(grouped, entry & U(~kInGroup), gather<U>(impl.object_of_top.data(), convert<IntOf<U>>(known)));
     select(hit, object, none).copy_to(&hits.object[first], anywhere);
-    select(placed, geometry, gather<U>(impl.part_of_top.data(), std::bit_cast<IntOf<U>>(known)))
+    select(placed, geometry, gather<U>(impl.part_of_top.data(), convert<IntOf<U>>(known)))
         .copy_to(&hits.part[first], anywhere);
     primitive.copy_to(&hits.primitive[first], anywhere);
     for_each_bit(lane_bits(hit && object == none), [&](unsigned i) {
