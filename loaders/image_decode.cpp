@@ -20,9 +20,12 @@
 namespace alhazen {
 namespace {
 
+/// `texels`: for how many there will be room.
 template <class T>
-void read_samples(ImageReader& in, SampleType type, TextureImage& image) {
-  std::vector<T> samples(size_t(image.width) * size_t(image.height) * size_t(image.channels));
+void read_samples(ImageReader& in, SampleType type, size_t texels, TextureImage& image) {
+  std::vector<T> samples;
+  samples.reserve(texels * size_t(image.channels));
+  samples.resize(size_t(image.width) * size_t(image.height) * size_t(image.channels));
   in.read(image.channels, type, samples.data(), ptrdiff_t(size_t(image.channels) * sizeof(T)));
   image.samples = std::move(samples);
 }
@@ -38,7 +41,7 @@ void check_size(const EncodedImage& image, const ImageHeader& header, LoadBudget
   budget.take(image.place, bytes + (image.mipmaps ? bytes / 3 : 0) + header.scratch);
 }
 
-TextureImage decode(ImageKind kind, const std::vector<uint8_t>& bytes, const ImageHeader& header) {
+TextureImage decode(ImageKind kind, const std::vector<uint8_t>& bytes, const ImageHeader& header, bool mipmaps) {
   if (kind == ImageKind::ktx2) return decode_ktx(bytes);
   const auto in = image_library().open_memory(std::string(name_of(kind)), bytes);
   const ImageLayout& layout = in->layout();
@@ -48,24 +51,25 @@ TextureImage decode(ImageKind kind, const std::vector<uint8_t>& bytes, const Ima
 
   TextureImage image;
   image.width = layout.width, image.height = layout.height, image.channels = std::min(int(layout.channels.size()), 4);
+  const size_t texels = mipmaps ? texels_of_levels(image.width, image.height) : 0;
   if (layout.type == SampleType::uint8)
-    read_samples<uint8_t>(*in, SampleType::uint8, image);
+    read_samples<uint8_t>(*in, SampleType::uint8, texels, image);
   else if (layout.type == SampleType::uint16)
-    read_samples<uint16_t>(*in, SampleType::uint16, image);
+    read_samples<uint16_t>(*in, SampleType::uint16, texels, image);
   else
-    read_samples<float>(*in, SampleType::float32, image);
+    read_samples<float>(*in, SampleType::float32, texels, image);
   return image;
 }
 
 /// One channel, as many bits as the glossiness has.
 TextureImage roughness_image(const TextureImage& glossiness, float factor) {
-  TextureImage image{glossiness.width, glossiness.height, 1, {}, {}};
+  TextureImage image{glossiness.width, glossiness.height, 1, {}};
   const auto n = size_t(glossiness.channels);
   std::visit(
       [&](const auto& in) {
         using T = typename std::decay_t<decltype(in)>::value_type;
         constexpr float most = std::is_floating_point_v<T> ? 1.0f : float(std::numeric_limits<T>::max());
-        std::vector<T> out(in.size() / n);
+        std::vector<T> out(size_t(image.width) * size_t(image.height));
         for (size_t i = 0; i < out.size(); ++i) {
           const float alpha = n % 2 == 0 ? float(in[i * n + n - 1]) : most;
           const float roughness = most - factor * alpha;
@@ -97,7 +101,7 @@ std::vector<TextureImage> decode_images(std::vector<EncodedImage> encoded, const
       const auto header = read_image_header(*kind, encoded[i].bytes);
       if (!header) return failed("its header is damaged, or of a kind that is not read");
       check_size(encoded[i], *header, budget);
-      images[i] = decode(*kind, encoded[i].bytes, *header);
+      images[i] = decode(*kind, encoded[i].bytes, *header, encoded[i].mipmaps);
       encoded[i].bytes = {};
       if (encoded[i].mipmaps) add_smaller_levels(images[i], encoded[i].space);
     } catch (const Error&) {

@@ -50,38 +50,46 @@ T mean_of_srgb(T a, T b, T c, T d) {
   }
 }
 
+/// The texels of the next level behind those of `level`.
 template <class T>
-TextureImage halved(const TextureImage& image, const std::vector<T>& in, ColorSpace space) {
-  TextureImage half{std::max(1, image.width / 2), std::max(1, image.height / 2), image.channels, {}, {}};
-  const auto channels = size_t(image.channels), colors = channels < 3 ? size_t{1} : size_t{3};
-  std::vector<T> out(size_t(half.width) * size_t(half.height) * channels);
-  T* to = out.data();
+void halve(const MipLevel& level, size_t channels, ColorSpace space, std::vector<T>& samples) {
+  const MipLevel half = level.next();
+  const size_t colors = channels < 3 ? 1 : 3;
+  const T* const in = samples.data() + level.first_texel * channels;
+  T* to = samples.data() + half.first_texel * channels;
   for (int y = 0; y < half.height; ++y)
     for (int x = 0; x < half.width; ++x) {
       const auto at = [&](int i, int k) {
-        const int column = std::min(2 * x + i, image.width - 1), row = std::min(2 * y + k, image.height - 1);
-        return in.data() + (size_t(row) * size_t(image.width) + size_t(column)) * channels;
+        const int column = std::min(2 * x + i, level.width - 1), row = std::min(2 * y + k, level.height - 1);
+        return in + (size_t(row) * size_t(level.width) + size_t(column)) * channels;
       };
       const T *a = at(0, 0), *b = at(1, 0), *c = at(0, 1), *d = at(1, 1);
       for (size_t k = 0; k < channels; ++k)
         *to++ = space == ColorSpace::srgb && k < colors ? mean_of_srgb(a[k], b[k], c[k], d[k])
                                                         : mean(a[k], b[k], c[k], d[k]);
     }
-  half.samples = std::move(out);
-  return half;
 }
 
 }  // namespace
 
+size_t texels_of_levels(int width, int height) {
+  MipLevel level{width, height};
+  while (level.width > 1 || level.height > 1) level = level.next();
+  return level.first_texel + 1;
+}
+
 void add_smaller_levels(TextureImage& image, ColorSpace space) {
-  image.smaller.clear();
   if (image.width <= 0 || image.height <= 0) return;
-  const TextureImage* last = &image;
-  while (last->width > 1 || last->height > 1) {
-    TextureImage half = std::visit([&](const auto& samples) { return halved(*last, samples, space); }, last->samples);
-    image.smaller.push_back(std::move(half));
-    last = &image.smaller.back();
-  }
+  const auto channels = size_t(image.channels);
+  std::visit(
+      [&](auto& samples) {
+        samples.resize(texels_of_levels(image.width, image.height) * channels);
+        for (MipLevel level{image.width, image.height}; level.width > 1 || level.height > 1; level = level.next()) {
+          halve(level, channels, space, samples);
+          ++image.levels;
+        }
+      },
+      image.samples);
 }
 
 }  // namespace alhazen

@@ -5,8 +5,11 @@
 
 namespace alhazen {
 
-/// Fills `image.smaller`: each level half as wide and high as the one before (rounded down, at least 1), its texels the
-/// means of 2 x 2, of colours as linear light.
+/// How many texels all mip levels of an image have, down to one of 1 x 1.
+[[nodiscard]] size_t texels_of_levels(int width, int height);
+
+/// Appends the smaller levels of an image that has one: the texels of each are the means of 2 x 2 of the one before, of
+/// colours as linear light.
 void add_smaller_levels(TextureImage& image, ColorSpace space);
 
 }  // namespace alhazen

@@ -18,12 +18,18 @@ struct BasicPhongBsdf {
 };
 using PhongBsdf = BasicPhongBsdf<float>;
 
+/// What its textures are looked up with: the model knows no mipmaps.
+template <class F>
+[[nodiscard]] BasicSurfaceInputs<F> point_inputs(BasicSurfaceInputs<F> inputs) noexcept {
+  inputs.uv_per_metre = nullptr;
+  return inputs;
+}
+
 template <class F = float>
 [[nodiscard]] BasicPhongBsdf<F> phong_bsdf(const Material& material, const TextureTable& table,
                                            const BasicSurfaceInputs<F>& inputs) noexcept {
   const PhongParameters& p = material.phong;
-  BasicSurfaceInputs<F> point = inputs;  // the model knows no mipmaps
-  point.footprint = 0;
+  const BasicSurfaceInputs<F> point = point_inputs(inputs);
   const auto textured = [&](const Rgb& factor, const TextureUse& use) {
     return BasicRgb<F>(factor) * inputs.color.rgb * sample(table, use, ColorSpace::srgb, point).rgb;
   };

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -15,9 +16,20 @@ namespace alhazen {
 /// RGBA), straight alpha, samples not linearised. Eight bits stay eight bits. An image that could not be decoded has
 /// width 0 and reads as opaque white.
 struct TextureImage {
-  int width = 0, height = 0, channels = 0;
-  std::variant<std::vector<uint8_t>, std::vector<uint16_t>, std::vector<float>> samples;
-  std::vector<TextureImage> smaller{};  // mip levels 1, 2, ...; empty: level 0 is all there is
+  int width = 0, height = 0, channels = 0;                                                // of level 0
+  std::variant<std::vector<uint8_t>, std::vector<uint16_t>, std::vector<float>> samples;  // level after level
+  int levels = 1;                                                                         // mip levels
+};
+
+/// Of a mip level: its size, and how many texels the levels before it have.
+struct MipLevel {
+  int width = 0, height = 0;
+  size_t first_texel = 0;
+
+  /// Half as wide and high, rounded down, at least 1.
+  [[nodiscard]] MipLevel next() const {
+    return {width > 1 ? width / 2 : 1, height > 1 ? height / 2 : 1, first_texel + size_t(width) * size_t(height)};
+  }
 };
 
 enum class Wrap : uint8_t { repeat, mirrored_repeat, clamp_to_edge };
@@ -49,19 +61,19 @@ struct TextureUse {
 
 enum class ColorSpace : uint8_t { linear, srgb };
 
-/// Two texels beside or above each other in each lane.
-template <class F>
-struct TexelPair {
-  IntOf<F> a, b;
+/// Two texels beside each other, or two rows, in each lane.
+template <class F, class Number>
+struct Neighbours {
+  Number a, b;
   F t;  // weight of b
 };
 
 /// The texels of one mip level in each lane that a look-up mixes.
 template <class F>
 struct LevelTexels {
-  IntOf<F> width;  // of the level
-  TexelPair<F> x, y;
-  bool in_rows = false;  // in every lane, x.b follows x.a in the image
+  Neighbours<F, IntOf<F>> column;
+  Neighbours<F, AddressOf<F>> row;  // numbers of their first texels
+  bool beside = false;              // in every lane, column.b follows column.a
 };
 
 /// Where a look-up's texels lie. Textures of one size that are used alike, as those of a material mostly are, have it
@@ -71,13 +83,11 @@ struct TextureLookup {
   struct Key {
     TextureUse use;   // of no texture
     Texture sampler;  // of no image
-    int width = 0, height = 0;
-    size_t smaller = 0;  // levels
+    int width = 0, height = 0, levels = 0;
+    bool of_point = false;  // whatever the footprint
     friend bool operator==(const Key&, const Key&) = default;
   } key;                        // no width: nothing is found yet
-  LaneArray<IntOf<F>> level;    // the larger of two
-  F fraction;                   // of the smaller one
-  bool one_level = false;       // in all lanes
+  F fraction;                   // of the smaller level of two
   LevelTexels<F> large, small;  // `small` where fractions are not 0
 };
 
@@ -115,6 +125,12 @@ template <class F = float>
                                   const BasicSurfaceInputs<F>& inputs) noexcept {
   return use ? sample_used(table, use, space, inputs) : BasicRgba<F>{};
 }
+
+/// Asks for the memory that look-ups of these uses will read, so that they wait for it together. The texels of the
+/// first are found, into `inputs.lookup`; asked for are all textures' that lie as they do.
+template <class F>
+void prefetch(const TextureTable& table, std::span<const TextureUse* const> uses,
+              const BasicSurfaceInputs<F>& inputs) noexcept;
 
 /// As many points as are shaded at once: what look-ups and materials are compiled for beside single points.
 using ShadingLanes = std::experimental::native_simd<float>;

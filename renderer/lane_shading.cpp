@@ -16,10 +16,10 @@ using Color = BasicRgb<F>;
 
 struct Hit {
   BasicSurfacePoint<F> surface;
-  Vec3<F> d, b, n;  // ray direction, back along it, shading normal turned towards b
-  Mask enters;
-  Color weight;
-  F eta;  // the index before the surface to that beyond it
+  Vec3<F> d{}, b{}, n{};  // ray direction, back along it, shading normal turned towards b
+  Mask enters{};
+  Color weight{};
+  F eta{};  // the index before the surface to that beyond it
 };
 
 const Color kBlack(F(0));
@@ -137,19 +137,20 @@ void shade_lanes(const Scene& scene, const ShadingGroup& group, const LaneWork& 
                  LaneLight& out) {
   const Material& material = scene.materials[group.material];
   const TextureTable table = texture_table(scene);
-  Hit hit;
   clock.enter_part(Phase::surface_points);
-  hit.surface = surface_points(scene, work.hits, group.attributes, group.has_textures);
+  Hit hit{surface_points(scene, work.hits, group.attributes, group.has_textures)};
   hit.d = work.hits.direction.load(), hit.b = -hit.d;
   hit.surface.footprint = footprint(work.cone_width.load(), hit.surface.ng_world, hit.d);
   hit.weight = work.weight.load();
   TextureLookup<F> lookup;
   hit.surface.lookup = &lookup;
   clock.enter_part(group.has_textures ? Phase::textures : Phase::shading);
+  const BasicSurfaceInputs<F> inputs = hit.surface.inputs();
+  if (group.has_textures)
+    prefetch(table, texture_uses(material), material.model == ShadingModel::phong ? point_inputs(inputs) : inputs);
   hit.n = shading_normal(hit.surface, material.normal_texture, material.normal_scale, table);
   hit.enters = dot(hit.n, hit.d) < F(0);
   hit.n = select(hit.enters, hit.n, -hit.n);
-  const BasicSurfaceInputs<F> inputs = hit.surface.inputs();
   out.emits = max_component(material.emissive) > 0;
   if (out.emits) out.emission.store(hit.weight * emission(material, table, inputs));
   out.mirror.lanes = out.refracted.lanes = 0;

@@ -1,9 +1,11 @@
 // Mip levels and how look-ups choose among them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "materials/mipmap.h"
+#include "materials/phong.h"
 #include "materials/texture.h"
 #include "renderer/camera_ray.h"
 
@@ -14,7 +16,7 @@ TextureImage checker(int size) {
   std::vector<uint8_t> texels;
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) texels.push_back((x + y) % 2 ? 255 : 0);
-  return {size, size, 1, std::move(texels), {}};
+  return {size, size, 1, std::move(texels)};
 }
 
 struct Table {
@@ -30,13 +32,11 @@ struct Table {
 };
 
 TEST(Mipmaps, HalveDownToOneTexel) {
-  TextureImage image{7, 3, 2, std::vector<uint16_t>(42, 1000), {}};
+  TextureImage image{7, 3, 2, std::vector<uint16_t>(42, 1000)};
   add_smaller_levels(image, ColorSpace::srgb);
-  ASSERT_EQ(image.smaller.size(), 2u);
-  EXPECT_EQ(image.smaller[0].width, 3);
-  EXPECT_EQ(image.smaller[0].height, 1);
-  EXPECT_EQ(image.smaller[1].width, 1);
-  EXPECT_EQ(std::get<1>(image.smaller[1].samples), (std::vector<uint16_t>{1000, 1000}));
+  EXPECT_EQ(image.levels, 3);  // 7 x 3, 3 x 1, 1 x 1
+  EXPECT_EQ(texels_of_levels(7, 3), 25u);
+  EXPECT_EQ(std::get<1>(image.samples), std::vector<uint16_t>(50, 1000));
 }
 
 TEST(Mipmaps, AverageColoursAsLightAndNumbersAsNumbers) {
@@ -48,8 +48,10 @@ TEST(Mipmaps, AverageColoursAsLightAndNumbersAsNumbers) {
 TEST(Mipmaps, ArePickedByTheFootprintInTexels) {
   Table t;
   // Levels told apart by their values.
-  for (size_t k = 0; k < t.images[0].smaller.size(); ++k)
-    for (uint8_t& v : std::get<0>(t.images[0].smaller[k].samples)) v = uint8_t(10 * (k + 1));
+  std::vector<uint8_t>& samples = std::get<0>(t.images[0].samples);
+  MipLevel level_at = MipLevel{64, 64}.next();
+  for (int k = 1; k < t.images[0].levels; ++k, level_at = level_at.next())
+    std::fill(samples.begin() + ptrdiff_t(level_at.first_texel), samples.end(), uint8_t(10 * k));
   const auto level = [&](float texels) { return t.at({0.5f, 0.5f}, texels / 64) * 25.5f; };
   EXPECT_NEAR(level(2), 1, 1e-4f);
   EXPECT_NEAR(level(8), 3, 1e-4f);
@@ -68,8 +70,23 @@ TEST(Mipmaps, ArePickedByTheFootprintInTexels) {
 TEST(Mipmaps, AreLeftAloneWhereATexelCoversTheFootprint) {
   const Table t;
   Table bare;
-  bare.images[0].smaller.clear();
+  bare.images[0] = checker(64);
   for (float x = 0; x < 1; x += 0.013f) EXPECT_EQ(t.at({x, 0.4f}, 0.9f / 64), bare.at({x, 0.4f}, 0.9f / 64));
+}
+
+TEST(Mipmaps, AreNotForTheModelThatKnowsNoneEvenWhereALookUpIsShared) {
+  const Table t;
+  Material material;
+  material.phong.diffuse = Rgb(1.0f), material.phong.diffuse_texture = t.use;
+  const Vec2f uv{0.501f, 0.301f};
+  const float density = 1;
+  TextureLookup<float> lookup;
+  const SurfaceInputs inputs{&uv, 1, {}, 8, &density, &lookup};
+  const TextureTable table{&t.textures, &t.images};
+  const float over_footprint = sample(table, t.use, ColorSpace::srgb, inputs).rgb.r;
+  const float at_point = phong_bsdf(material, table, inputs).diffuse.r;
+  EXPECT_EQ(at_point, t.at(uv, 0, 1, ColorSpace::srgb));
+  EXPECT_GT(std::abs(at_point - over_footprint), 0.1f);
 }
 
 TEST(Cone, IsAsWideAsAPixel) {

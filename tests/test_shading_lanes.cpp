@@ -69,22 +69,17 @@ TextureImage random_image(Uniform& uniform, int index) {
                      .height = 1 + int(uniform.bits() % 23),
                      .channels = 1 + index % 4,
                      .samples = {}};
-  const auto fill = [&](TextureImage& level, auto value) {
-    std::vector<decltype(value())> samples(size_t(level.width) * size_t(level.height) * size_t(level.channels));
+  MipLevel last{image.width, image.height};
+  while (index % 5 && (last.width > 1 || last.height > 1)) last = last.next(), ++image.levels;
+  const auto fill = [&](auto value) {
+    const size_t texels = last.first_texel + size_t(last.width) * size_t(last.height);
+    std::vector<decltype(value())> samples(texels * size_t(image.channels));
     for (auto& sample : samples) sample = value();
-    level.samples = samples;
+    image.samples = samples;
   };
-  const auto any = [&](TextureImage& level) {
-    if (index % 3 == 0) fill(level, [&] { return uint8_t(uniform.bits()); });
-    if (index % 3 == 1) fill(level, [&] { return uint16_t(uniform.bits()); });
-    if (index % 3 == 2) fill(level, [&] { return uniform(0, 2); });
-  };
-  any(image);
-  for (int w = image.width / 2, h = image.height / 2; index % 5 && w > 0 && h > 0; w /= 2, h /= 2) {
-    TextureImage level{.width = w, .height = h, .channels = image.channels, .samples = {}};
-    any(level);
-    image.smaller.push_back(level);
-  }
+  if (index % 3 == 0) fill([&] { return uint8_t(uniform.bits()); });
+  if (index % 3 == 1) fill([&] { return uint16_t(uniform.bits()); });
+  if (index % 3 == 2) fill([&] { return uniform(0, 2); });
   return image;
 }
 
