@@ -131,6 +131,14 @@ struct alignas(64) LaneArray {
 };
 
 template <class F>
+struct Vec2Array {
+  LaneArray<F> x, y;
+
+  [[nodiscard]] Vec2<F> load() const { return {x.load(), y.load()}; }
+  void store(const Vec2<F>& v) { x.store(v.x), y.store(v.y); }
+};
+
+template <class F>
 struct Vec3Array {
   LaneArray<F> x, y, z;
 

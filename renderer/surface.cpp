@@ -4,9 +4,11 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "accel/line_map.h"
 #include "accel/posed.h"
+#include "accel/shapes/polygon_plane.h"
 #include "core/lane_memory.h"
 #include "materials/microfacet.h"
 
@@ -15,15 +17,24 @@ namespace {
 
 constexpr double kUlp = 0x1p-24;  // half the spacing of floats, relative
 
-/// What a triangle brings from the corners of its part, as far as the part has it.
+/// What a triangle brings from the corners of its part, as far as the part has it. What it mostly lacks is kept in
+/// memory that nobody sets to 0.
 template <class F>
 struct Corners {
-  std::array<Vec3<F>, 3> p_object, n_object, t_object;
+  std::array<Vec3<F>, 3> p_object, n_object;
+  std::array<Vec3Array<F>, 3> t_object;
   Vec3<F> n_polygon;  // in object space
   F handedness;       // of the first tangent
-  std::array<std::array<Vec2<F>, kMaxUvSets>, 3> uvs;
-  std::array<BasicRgba<F>, 3> colors;
+  std::array<std::array<Vec2Array<F>, 3>, kMaxUvSets> uvs;
+  std::array<RgbArray<F>, 3> colors;
+  std::array<LaneArray<F>, 3> alphas;
 };
+
+/// The three corners' values.
+template <class Array>
+auto loaded(const std::array<Array, 3>& corner) {
+  return std::array{corner[0].load(), corner[1].load(), corner[2].load()};
+}
 
 template <class V, class F>
 V interpolated(const std::array<V, 3>& corner, const F& u, const F& v) {
@@ -40,58 +51,55 @@ Vec3<D> outer_normal(const Affine3<D>& m, const D& stretch, const Vec3<D>& n) {
 /// Traversal computes a triangle's normal in floats in object space, as a cross product of its edges, and with it the
 /// plane's distance from a ray that starts up to the longest edge away from a vertex: wrong by this over twice the
 /// area. For needles that is many roundings; for a triangle of no area, more than its size would hide nothing any more.
-template <class D>
-D plane_error(const Vec3<D>& a, const Vec3<D>& b, const Vec3<D>& c, const D& twice_area) {
-  const D ab = length(b - a), bc = length(c - b), ca = length(a - c);
-  const D low = smaller(ab, bc), high = larger(ab, bc);
-  const D shortest = smaller(low, ca), middle = larger(low, smaller(high, ca)), longest = larger(high, ca);
-  return longest * smaller(D(D(8 * kUlp) * shortest * middle), twice_area);
+template <class F>
+DoubleOf<F> plane_error(const std::array<Vec3<F>, 3>& corner, const DoubleOf<F>& twice_area) {
+  using D = DoubleOf<F>;
+  const F ab = length(corner[1] - corner[0]), bc = length(corner[2] - corner[1]), ca = length(corner[0] - corner[2]);
+  const F low = smaller(ab, bc), high = larger(ab, bc);
+  const F shortest = smaller(low, ca), middle = larger(low, smaller(high, ca)), longest = larger(high, ca);
+  return convert<D>(longest) * smaller(D(D(8 * kUlp) * convert<D>(shortest) * convert<D>(middle)), twice_area);
 }
 
-/// `v` over its length, but for one more rounding; 0 stays 0. For one division instead of three.
-template <class D>
-Vec3<D> unit(const Vec3<D>& v) {
-  const D squared = dot(v, v);
-  return select(squared > D(0), v * D(D(1) / square_root(squared)), v);
+/// `v` over its length; 0 stays 0.
+template <class F>
+Vec3<F> unit(const Vec3<F>& v) {
+  const F squared = dot(v, v);
+  return select(squared > F(0), v * F(F(1) / square_root(squared)), v);
 }
 
-/// Position, normals and their errors. `m`: to the world, or null for a part that lies there; `roundings`: of the
-/// position, in units of kUlp.
+/// Position, normals and their errors. `m`: to the world, or null for a part that lies there, to the same bits as with
+/// the identity; `roundings`: of the position, in units of kUlp.
 template <class F>
 void place(const Corners<F>& corners, const Attributes& has, const F& u, const F& v, const Affine3<DoubleOf<F>>* m,
            const DoubleOf<F>& roundings, BasicSurfacePoint<F>& s) {
   using D = DoubleOf<F>;
   const auto vertex = [&](size_t k) { return convert<D>(corners.p_object[k]); };
-  const auto in_world = [&](const Vec3<D>& p) { return m ? transform_point(*m, p) : p; };
-  const std::array<Vec3<D>, 3> p{in_world(vertex(0)), in_world(vertex(1)), in_world(vertex(2))};
-  s.p_world = interpolated(p, convert<D>(u), convert<D>(v));
-  const Vec3<D> across = cross(p[1] - p[0], p[2] - p[0]);
-  const D twice_area = length(across);
+  const Vec3<D> origin = vertex(0), e1 = vertex(1) - origin, e2 = vertex(2) - origin;
+  const Vec3<D> p = origin + e1 * convert<D>(u) + e2 * convert<D>(v);
+  s.p_world = m ? transform_point(*m, p) : p;
+  const Vec3<D> across = cross(e1, e2),
+                outward = m ? cross(transform_vector(*m, e1), transform_vector(*m, e2)) : across;
+  const D squared = dot(outward, outward), length_outward = square_root(squared), reciprocal = D(1) / length_outward;
   const D stretch = m ? determinant(*m) : D(1);
-  const Vec3<D> ng = unit(across);
+  const Vec3<D> ng = select(squared > D(0), outward * reciprocal, outward);
   s.ng_world = s.ns_world = convert<F>(select(stretch < D(0), -ng, ng));
 
   const auto size_of = [](const Vec3<D>& x) { return larger(absolute(x.x), larger(absolute(x.y), absolute(x.z))); };
-  D size = size_of(s.p_world), error;
-  if (m) {
-    const Vec3<D> a = vertex(0), b = vertex(1), c = vertex(2);
-    size = size + size_of(m->origin);
-    error = plane_error(a, b, c, length(cross(b - a, c - a))) * absolute(stretch);
-  } else {
-    error = plane_error(p[0], p[1], p[2], twice_area);
-  }
-  s.offset = convert<F>(D(D(kUlp) * roundings * size + error / twice_area));
+  const D twice_area = m ? length(across) : length_outward;
+  D size = size_of(s.p_world), error = plane_error(corners.p_object, twice_area);
+  if (m) size = size + size_of(m->origin), error = error * absolute(stretch);
+  s.offset = convert<F>(D(D(kUlp) * roundings * size + error * reciprocal));
 
   if (has.normals || has.polygon_normals) {
-    const Vec3<D> n = convert<D>(has.normals ? interpolated(corners.n_object, u, v) : corners.n_polygon);
-    const Vec3<D> n_world = unit(m ? outer_normal(*m, stretch, n) : n);
-    const D squared = dot(n_world, n_world);
-    const auto usable = squared > D(0) && squared - squared == D(0);
-    s.ns_world = select(convert_mask<F>(usable), convert<F>(n_world), s.ns_world);
+    const Vec3<F> n = has.normals ? interpolated(corners.n_object, u, v) : corners.n_polygon;
+    const Vec3<F> n_world =
+        unit(m ? convert<F>(outer_normal(*m, stretch, convert<D>(n)) * D(D(1) / absolute(stretch))) : n);
+    const F n_squared = dot(n_world, n_world);
+    s.ns_world = select(MaskOf<F>(n_squared > F(0) && n_squared - n_squared == F(0)), n_world, s.ns_world);
   }
   if (has.tangents) {
-    const Vec3<D> t = convert<D>(interpolated(corners.t_object, u, v));
-    s.tangent_world = convert<F>(unit(m ? transform_vector(*m, t) : t));
+    const Vec3<F> t = interpolated(loaded(corners.t_object), u, v);
+    s.tangent_world = unit(m ? convert<F>(transform_vector(*m, convert<D>(t))) : t);
     s.bitangent_sign = select(convert_mask<F>(stretch < D(0)), F(-corners.handedness), corners.handedness);
   }
 }
@@ -102,12 +110,9 @@ template <class F>
 void interpolate_attributes(const Corners<F>& corners, const Attributes& has, const F& u, const F& v,
                             BasicSurfacePoint<F>& s) {
   s.uv_count = int(has.uv_sets);
-  for (size_t k = 0; k < has.uv_sets; ++k)
-    s.uvs[k] = interpolated(std::array{corners.uvs[0][k], corners.uvs[1][k], corners.uvs[2][k]}, u, v);
+  for (size_t k = 0; k < has.uv_sets; ++k) s.uvs[k] = interpolated(loaded(corners.uvs[k]), u, v);
   if (!has.colors) return;
-  const auto& c = corners.colors;
-  s.color = {interpolated(std::array{c[0].rgb, c[1].rgb, c[2].rgb}, u, v),
-             interpolated(std::array{c[0].a, c[1].a, c[2].a}, u, v)};
+  s.color = {interpolated(loaded(corners.colors), u, v), interpolated(loaded(corners.alphas), u, v)};
 }
 template <class F>
 void measure_uvs(const Corners<F>& corners, const Attributes& has, const Affine3<DoubleOf<F>>* m,
@@ -120,7 +125,7 @@ void measure_uvs(const Corners<F>& corners, const Attributes& has, const Affine3
   const Vec3<D> p0 = vertex(0);
   const F area = convert<F>(length(cross(vertex(1) - p0, vertex(2) - p0)));
   for (size_t k = 0; k < has.uv_sets; ++k) {
-    const Vec2<F> a = corners.uvs[0][k], b = corners.uvs[1][k], c = corners.uvs[2][k];
+    const auto [a, b, c] = loaded(corners.uvs[k]);
     const F uv_area = absolute(F((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)));
     s.uv_per_metre[k] = select(area > F(0), square_root(F(uv_area / area)), F(0));
   }
@@ -135,13 +140,13 @@ Corners<float> corners_of(const PosedPart& posed, const TriangleMesh& part, cons
     if (has.normals) c.n_object[k] = posed.normal(corner[k]);
     if (has.tangents) {
       const Vec4f t = posed.tangent(corner[k]);
-      c.t_object[k] = {t.x, t.y, t.z};
+      c.t_object[k].store({t.x, t.y, t.z});
       if (k == 0) c.handedness = t.w;
     }
-    for (size_t i = 0; i < has.uv_sets; ++i) c.uvs[k][i] = part.uvs[i][corner[k]];
+    for (size_t i = 0; i < has.uv_sets; ++i) c.uvs[i][k].store(part.uvs[i][corner[k]]);
     if (has.colors) {
       const Vec4f& color = part.colors[corner[k]];
-      c.colors[k] = {{color.x, color.y, color.z}, color.w};
+      c.colors[k].store({color.x, color.y, color.z}), c.alphas[k].store(color.w);
     }
   }
   return c;
@@ -166,6 +171,9 @@ SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v,
   return s;
 }
 
+/// Of a shape: v runs down.
+float bitangent_sign(const Affine3d& m) { return determinant(m) < 0 ? 1.0f : -1.0f; }
+
 /// `m`: from the shape's space to the world; `has_textures`: whether anybody asks for texture coordinates and tangents.
 SurfacePoint shape_point(const Scene& scene, uint32_t object, int face, const Affine3d& m, const Vec3d& p_near_object,
                          bool has_textures = true) {
@@ -179,7 +187,7 @@ SurfacePoint shape_point(const Scene& scene, uint32_t object, int face, const Af
         s.ng_world = s.ns_world = Vec3f(normalize(transform_normal(m, normal(shape, p, face))));
         if (!has_textures) return;
         s.tangent_world = Vec3f(normalize(transform_vector(m, u_tangent(shape, p, face))));
-        s.bitangent_sign = determinant(m) < 0 ? 1.0f : -1.0f;  // v runs down
+        s.bitangent_sign = bitangent_sign(m);
         s.uvs[0] = texture_coordinates(shape, p, face);
       },
       scene.geometry.shapes[placed.shape]);
@@ -331,8 +339,14 @@ class LaneParts {
     const auto part = [&](size_t k) {
       return &geometry.meshes[geometry.mesh_instances.mesh_of(hits.ids[k].object)].parts[hits.ids[k].part];
     };
-    one_part_ = true;
-    for (size_t k = 0; k < kWidthOf<F>; ++k) parts_[k] = part(k), one_part_ = one_part_ && parts_[k] == parts_[0];
+    const auto is_as_before = [&](size_t k) {
+      return hits.ids[k].object == hits.ids[k - 1].object && hits.ids[k].part == hits.ids[k - 1].part;
+    };
+    one_part_ = true, parts_[0] = part(0);
+    for (size_t k = 1; k < kWidthOf<F>; ++k) {
+      parts_[k] = is_as_before(k) ? parts_[k - 1] : part(k);
+      one_part_ = one_part_ && parts_[k] == parts_[0];
+    }
   }
 
   /// An array in each lane.
@@ -401,16 +415,16 @@ Corners<F> lane_corners(const LaneParts& parts, const Attributes& has, const Lan
                     [&](size_t k, const Address& n) { c.n_object[k] = load_vec3(n); });
   if (has.tangents)
     for_each_corner(parts.rows(&TriangleMesh::tangents), [&](size_t k, const Address& t) {
-      c.t_object[k] = load_vec3(t);
+      c.t_object[k].store(load_vec3(t));
       if (k == 0) c.handedness = component<F>(t, 3);
     });
   for (size_t i = 0; i < has.uv_sets; ++i)
     for_each_corner(parts.rows([&](const TriangleMesh& part) -> const auto& { return part.uvs[i]; }),
-                    [&](size_t k, const Address& uv) { c.uvs[k][i] = load_vec2(uv); });
+                    [&](size_t k, const Address& uv) { c.uvs[i][k].store(load_vec2(uv)); });
   if (has.colors)
     for_each_corner(parts.rows(&TriangleMesh::colors), [&](size_t k, const Address& color) {
       const Vec3<F> rgb = load_vec3(color);
-      c.colors[k] = {{rgb.x, rgb.y, rgb.z}, component<F>(color, 3)};
+      c.colors[k].store({rgb.x, rgb.y, rgb.z}), c.alphas[k].store(component<F>(color, 3));
     });
   return c;
 }
@@ -424,14 +438,6 @@ Affine3<D> lane_maps(const std::array<const Affine3d*, kWidthOf<F>>& maps) {
   return {column(&Affine3d::x), column(&Affine3d::y), column(&Affine3d::z), column(&Affine3d::origin)};
 }
 
-Affine3<D> lane_maps(const Geometry& geometry, const LaneHits& hits) {
-  std::array<Affine3d, kWidthOf<F>> maps;
-  std::array<const Affine3d*, kWidthOf<F>> where;
-  for (size_t k = 0; k < kWidthOf<F>; ++k)
-    maps[k] = geometry.mesh_instances.world_from_object(hits.ids[k].object), where[k] = &maps[k];
-  return lane_maps(where);
-}
-
 Affine3<D> broadcast(const Affine3d& m) {
   const auto all = [](const Vec3d& v) { return Vec3<D>(D(v.x), D(v.y), D(v.z)); };
   return {all(m.x), all(m.y), all(m.z), all(m.origin)};
@@ -440,43 +446,47 @@ Affine3<D> broadcast(const Affine3d& m) {
 /// The triangles of hits on meshes.
 struct LaneTriangles {
   Corners<F> corners;
-  Affine3<D> world_from_object;
-  D roundings;  // of a position, in units of kUlp
-  bool all_in_world;
+  std::optional<Affine3<D>> world_from_object;  // none where all lie in the world
+  D roundings;                                  // of a position, in units of kUlp
 
-  [[nodiscard]] const Affine3<D>* map() const { return all_in_world ? nullptr : &world_from_object; }
+  [[nodiscard]] const Affine3<D>* map() const { return world_from_object ? &*world_from_object : nullptr; }
 };
 
-LaneTriangles lane_triangles(const Scene& scene, const LaneHits& hits, const Attributes& has) {
-  constexpr double kInWorld = 4, kPlaced = 16;
-  const Geometry& geometry = scene.geometry;
-  LaneTriangles all;
-  LaneArray<IntOf<F>> triangles;
-  bool one_object = true;
-  for (size_t k = 0; k < kWidthOf<F>; ++k) {
-    triangles[k] = int32_t(hits.ids[k].primitive);
-    one_object = one_object && hits.ids[k].object == hits.ids[0].object;
+double position_roundings(const Affine3d& m) { return m == Affine3d{} ? 4 : 16; }
+
+void set_maps(const MeshInstances& instances, const LaneHits& hits, LaneTriangles& all) {
+  const auto is_on = [&](size_t k, size_t other) { return hits.ids[k].object == hits.ids[other].object; };
+  size_t alike = 1;
+  while (alike < kWidthOf<F> && is_on(alike, 0)) ++alike;
+  if (alike == kWidthOf<F>) {
+    const Affine3d m = instances.world_from_object(hits.ids[0].object);
+    all.roundings = D(position_roundings(m));
+    if (m != Affine3d{}) all.world_from_object = broadcast(m);
+    return;
   }
-  all.corners = lane_corners(LaneParts(scene, hits), has, triangles);
-  const auto is_in_world = [&](const HitIds& ids) {
-    return geometry.mesh_instances.world_from_object(ids.object) == Affine3d{};
-  };
-  if (one_object) {
-    all.all_in_world = is_in_world(hits.ids[0]);
-    all.roundings = D(all.all_in_world ? kInWorld : kPlaced);
-    if (!all.all_in_world)
-      all.world_from_object = broadcast(geometry.mesh_instances.world_from_object(hits.ids[0].object));
-    return all;
-  }
+  std::array<Affine3d, kWidthOf<F>> maps;  // of each object that the lane before is not on
+  std::array<const Affine3d*, kWidthOf<F>> map_of;
   LaneArray<D> roundings;
-  all.all_in_world = true;
+  bool all_in_world = true;
   for (size_t k = 0; k < kWidthOf<F>; ++k) {
-    const bool in_world = is_in_world(hits.ids[k]);
-    roundings[k] = in_world ? kInWorld : kPlaced;
-    all.all_in_world = all.all_in_world && in_world;
+    if (k > 0 && is_on(k, k - 1)) {
+      map_of[k] = map_of[k - 1], roundings[k] = roundings[k - 1];
+      continue;
+    }
+    maps[k] = instances.world_from_object(hits.ids[k].object);
+    map_of[k] = &maps[k], roundings[k] = position_roundings(maps[k]);
+    all_in_world = all_in_world && maps[k] == Affine3d{};
   }
   all.roundings = roundings.load();
-  if (!all.all_in_world) all.world_from_object = lane_maps(geometry, hits);
+  if (!all_in_world) all.world_from_object = lane_maps(map_of);
+}
+
+LaneTriangles lane_triangles(const Scene& scene, const LaneHits& hits, const Attributes& has) {
+  LaneTriangles all;
+  LaneArray<IntOf<F>> triangles;
+  for (size_t k = 0; k < kWidthOf<F>; ++k) triangles[k] = int32_t(hits.ids[k].primitive);
+  all.corners = lane_corners(LaneParts(scene, hits), has, triangles);
+  set_maps(scene.geometry.mesh_instances, hits, all);
   return all;
 }
 
@@ -525,33 +535,61 @@ struct LaneQuadrics {
   }
 };
 
+/// The hits in the shapes' spaces, about where their surfaces are.
+Vec3<D> object_points(const LaneHits& hits, const Affine3<D>& object_from_world, const Vec3<D>& origin_world) {
+  const Vec3<D> along = convert<D>(hits.direction.load()) * convert<D>(hits.t.load());
+  return transform_vector(object_from_world, convert<D>(hits.origin.load()) - origin_world + along);
+}
+
+/// The intersectors work in double on the float ray, so only the rounding of the origin has to be cleared.
+F shape_offset(const Vec3<D>& p_world) {
+  const D largest = larger(absolute(p_world.x), larger(absolute(p_world.y), absolute(p_world.z)));
+  return convert<F>(D(D(2 * kUlp) * largest));
+}
+
 /// What `shape_point` does, for shapes of one kind, but for texture coordinates. Answers the lanes that are left.
 template <class LaneShapes, class ShapeOf>
 uint32_t set_points_on(const LaneHits& hits, const Affine3<D>& m, const ShapeOf& shape_of, BasicSurfacePoint<F>& s) {
   const LaneShapes shapes(shape_of);
-  const Vec3<D> along = convert<D>(hits.direction.load()) * convert<D>(hits.t.load());
-  const Vec3<D> p = shapes.projected(transform_vector(inverse(m), convert<D>(hits.origin.load()) - m.origin + along));
+  const Vec3<D> p = shapes.projected(object_points(hits, inverse(m), m.origin));
   s.p_world = transform_point(m, p);
   s.ng_world = s.ns_world = convert<F>(normalize(outer_normal(m, determinant(m), shapes.normal(p))));
-  const Vec3<D>& w = s.p_world;
-  s.offset = convert<F>(D(D(2 * kUlp) * larger(absolute(w.x), larger(absolute(w.y), absolute(w.z)))));
+  s.offset = shape_offset(s.p_world);
   return shapes.doubtful(hits);
 }
 
-uint32_t set_points_in_lanes(const Scene& scene, const LaneHits& hits, BasicSurfacePoint<F>& s) {
+/// The same for one polygon, with its texture coordinates: in all lanes lie one plane's.
+void set_points_on(const Polygon& polygon, const Affine3d& m, const LaneHits& hits, BasicSurfacePoint<F>& s) {
+  const Vec3d ng = normalize(transform_normal(m, polygon.unit_normal)), center = polygon.center;
+  const Affine3<D> all = broadcast(m);
+  const Vec3<D> p = nearest_in_plane(polygon, object_points(hits, broadcast(inverse(m)), all.origin));
+  s.p_world = transform_point(all, p);
+  s.ng_world = s.ns_world = broadcast<F>(Vec3f(ng));
+  s.offset = shape_offset(s.p_world);
+  s.tangent_world = broadcast<F>(Vec3f(normalize(transform_vector(m, u_tangent(polygon, center, 0)))));
+  s.bitangent_sign = F(bitangent_sign(m));
+  const Vec2<D> uv = uv_in_plane(polygon, p);
+  s.uvs[0] = {convert<F>(uv.x), convert<F>(uv.y)};
+}
+
+/// Answers the lanes that are left.
+uint32_t set_points_in_lanes(const Scene& scene, const LaneHits& hits, bool has_textures, BasicSurfacePoint<F>& s) {
   const Geometry& geometry = scene.geometry;
+  std::array<const ShapeInstance*, kWidthOf<F>> placed;
   std::array<const Shape*, kWidthOf<F>> shapes;
-  std::array<const Affine3d*, kWidthOf<F>> maps;
-  bool alike = true;
+  bool alike = true, one = true;
   for (size_t k = 0; k < kWidthOf<F>; ++k) {
-    const ShapeInstance& placed = shape_instance(geometry, hits.ids[k].object);
-    shapes[k] = &geometry.shapes[placed.shape], maps[k] = &placed.world_from_object;
-    alike = alike && shapes[k]->index() == shapes[0]->index();
+    placed[k] = &shape_instance(geometry, hits.ids[k].object), shapes[k] = &geometry.shapes[placed[k]->shape];
+    alike = alike && shapes[k]->index() == shapes[0]->index(), one = one && placed[k] == placed[0];
   }
+  if (const auto* polygon = std::get_if<Polygon>(shapes[0]); one && polygon)
+    return set_points_on(*polygon, placed[0]->world_from_object, hits, s), 0;
   const bool spheres = std::holds_alternative<Sphere>(*shapes[0]),
              quadrics = std::holds_alternative<Quadric>(*shapes[0]);
-  if (!alike || !(spheres || quadrics)) return kEveryLane;
+  if (has_textures || !alike || !(spheres || quadrics)) return kEveryLane;
   const auto shape_of = [&](size_t k) -> const Shape& { return *shapes[k]; };
+  std::array<const Affine3d*, kWidthOf<F>> maps;
+  for (size_t k = 0; k < kWidthOf<F>; ++k) maps[k] = &placed[k]->world_from_object;
   const Affine3<D> m = lane_maps(maps);
   return spheres ? set_points_on<LaneSpheres>(hits, m, shape_of, s) : set_points_on<LaneQuadrics>(hits, m, shape_of, s);
 }
@@ -579,7 +617,7 @@ void set_points_one_by_one(const Scene& scene, const LaneHits& hits, bool has_te
 }
 
 void set_shape_points(const Scene& scene, const LaneHits& hits, bool has_textures, BasicSurfacePoint<F>& s) {
-  const uint32_t left = has_textures ? kEveryLane : set_points_in_lanes(scene, hits, s);
+  const uint32_t left = set_points_in_lanes(scene, hits, has_textures, s);
   if (left != 0) set_points_one_by_one(scene, hits, has_textures, left, s);
   s.uv_count = 1;
 }

@@ -218,20 +218,13 @@ Bounds3d bounds(const Polygon& polygon) {
   return {box.lower - margin, box.upper + margin};
 }
 
-Vec3d project(const Polygon& polygon, const Vec3d& p_object, int) {
-  const Vec3d p = p_object - polygon.center, n = polygon.unit_normal;
-  const Vec3d p_plane = to_plane_axes(p, polygon.dropped_axis);
-  const double rise_of_p =
-      p_plane.z - polygon.plane.slope_x * p_plane.x - polygon.plane.slope_y * p_plane.y - polygon.plane.offset;
-  return p_object - n * (rise_of_p * n[polygon.dropped_axis]);
-}
+Vec3d project(const Polygon& polygon, const Vec3d& p_object, int) { return nearest_in_plane(polygon, p_object); }
 
 Vec3d normal(const Polygon& polygon, const Vec3d&, int) { return polygon.unit_normal; }
 
 Vec2f texture_coordinates(const Polygon& polygon, const Vec3d& p_object, int) {
-  const Vec3d p = p_object - polygon.center;
-  return {float(polygon.uv_origin.x + dot(p, polygon.u_direction)),
-          float(polygon.uv_origin.y + dot(p, polygon.v_direction))};
+  const Vec2d uv = uv_in_plane(polygon, p_object);
+  return {float(uv.x), float(uv.y)};
 }
 
 Vec3d u_tangent(const Polygon& polygon, const Vec3d&, int) { return normalize(polygon.u_direction) * polygon.u_length; }

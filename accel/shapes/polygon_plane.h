@@ -24,6 +24,23 @@ inline Vec3d lifted(const Polygon& polygon, const Vec3d& vertex) {
   return from_plane_axes(Vec3d{p.x, p.y, z}, polygon.dropped_axis);
 }
 
+/// The point of the plane nearest to a point, and its texture coordinates; of one point or those of lanes.
+template <class N>
+Vec3<N> nearest_in_plane(const Polygon& polygon, const Vec3<N>& p_object) {
+  const auto in_all = [](const Vec3d& v) { return Vec3<N>{N(v.x), N(v.y), N(v.z)}; };
+  const Vec3<N> p = to_plane_axes(p_object - in_all(polygon.center), polygon.dropped_axis);
+  const HeightPlane<double>& plane = polygon.plane;
+  const N rise = p.z - N(plane.slope_x) * p.x - N(plane.slope_y) * p.y - N(plane.offset);
+  return p_object - in_all(polygon.unit_normal) * N(rise * N(polygon.unit_normal[polygon.dropped_axis]));
+}
+template <class N>
+Vec2<N> uv_in_plane(const Polygon& polygon, const Vec3<N>& p_object) {
+  const auto in_all = [](const Vec3d& v) { return Vec3<N>{N(v.x), N(v.y), N(v.z)}; };
+  const Vec3<N> p = p_object - in_all(polygon.center);
+  return {N(polygon.uv_origin.x) + dot(p, in_all(polygon.u_direction)),
+          N(polygon.uv_origin.y) + dot(p, in_all(polygon.v_direction))};
+}
+
 /// The strip of height y; the nearest for y outside of all.
 inline size_t strip_of(const Polygon& polygon, double y) {
   const double strip = (y - polygon.strips_lower) * polygon.strips_per_y;

@@ -1,0 +1,157 @@
+// Claims about points on surfaces worked out side by side: every lane has the bits that it has alone.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+#include "renderer/surface.h"
+
+namespace alhazen {
+namespace {
+
+using F = ShadingLanes;
+constexpr size_t kLanes = kWidthOf<F>;
+
+class Uniform {
+ public:
+  explicit Uniform(unsigned seed) : engine_(seed) {}
+  double operator()(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+  uint32_t below(size_t n) { return uint32_t(engine_() % n); }
+  Vec3d vector(double size) { return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)}; }
+  Vec3f direction() { return normalize(Vec3f(vector(1))); }
+
+ private:
+  std::mt19937 engine_;
+};
+
+/// Turned, stretched and, for every other one, mirrored.
+Affine3d random_map(Uniform& uniform) {
+  return {uniform.vector(2), uniform.vector(2), uniform.vector(2), uniform.vector(9)};
+}
+
+template <class V>
+struct Values;
+template <>
+struct Values<float> {
+  LaneArray<F> lanes;
+  explicit Values(const F& x) { lanes.store(x); }
+  bool are(size_t k, float one) const { return std::memcmp(&lanes[k], &one, sizeof one) == 0; }
+};
+template <class T>
+struct Values<Vec3<T>> {
+  using N = std::conditional_t<std::is_same_v<T, double>, DoubleOf<F>, F>;
+  Vec3Array<N> lanes;
+  explicit Values(const Vec3<N>& x) { lanes.store(x); }
+  bool are(size_t k, const Vec3<T>& one) const { return lanes.get(k) == one; }
+};
+
+/// Of `objects`, at points about them; `u` and `v` for triangles.
+LaneHits random_hits(Uniform& uniform, const Scene& scene, const std::vector<uint32_t>& objects) {
+  LaneHits hits;
+  for (size_t k = 0; k < kLanes; ++k) {
+    const uint32_t object = objects[uniform.below(objects.size())];
+    uint32_t part = 0, primitive = 0;
+    if (!is_shape(scene.geometry, object))
+      primitive =
+          uniform.below(scene.geometry.meshes[scene.geometry.mesh_instances.mesh_of(object)].parts[0].triangles.size());
+    hits.ids[k] = {object, part, primitive};
+    hits.origin.set(k, Vec3f(uniform.vector(20))), hits.direction.set(k, uniform.direction());
+    hits.t[k] = float(uniform(0, 20));
+    hits.u[k] = float(uniform(0, 0.5)), hits.v[k] = float(uniform(0, 0.5));
+  }
+  return hits;
+}
+
+void expect_same(const Scene& scene, const LaneHits& hits, const Attributes& has, bool has_textures) {
+  const BasicSurfacePoint<F> lanes = surface_points(scene, hits, has, has_textures);
+  const Values<Vec3d> p(lanes.p_world);
+  const Values<float> offset(lanes.offset);
+  const Values<Vec3f> ng(lanes.ng_world), ns(lanes.ns_world), tangent(lanes.tangent_world);
+  const Values<float> sign(lanes.bitangent_sign), u(lanes.uvs[0].x), v(lanes.uvs[0].y), rate(lanes.uv_per_metre[0]);
+  for (size_t k = 0; k < kLanes; ++k) {
+    const Rayf ray{hits.origin.get(k), hits.direction.get(k)};
+    const SurfacePoint one = surface_point(scene, ray, hits.ids[k], hits.t[k], hits.u[k], hits.v[k]);
+    EXPECT_TRUE(p.are(k, one.p_world) && offset.are(k, one.offset) && ng.are(k, one.ng_world) &&
+                ns.are(k, one.ns_world))
+        << k;
+    if (!has_textures) continue;
+    EXPECT_TRUE(tangent.are(k, one.tangent_world) && sign.are(k, one.bitangent_sign)) << k;
+    EXPECT_TRUE(u.are(k, one.uvs[0].x) && v.are(k, one.uvs[0].y) && rate.are(k, one.uv_per_metre[0])) << k;
+  }
+}
+
+TEST(LaneSurfaces, PointsOnShapesHaveTheBitsTheyHaveAlone) {
+  Uniform uniform(11);
+  for (int i = 0; i < 300; ++i) {
+    Scene scene;
+    scene.materials.resize(1);
+    Quadric quadric;
+    for (double& c : quadric.coefficients) c = uniform(-2, 2);
+    const Vec3d a = uniform.vector(3), b = uniform.vector(3), c = uniform.vector(3);
+    scene.geometry.shapes = {Sphere{uniform(0.1, 3)}, quadric, make_polygon({{a, b, c}}), Box{}, Disk{}};
+    for (uint32_t shape = 0; shape < 5; ++shape)
+      for (int k = 0; k < 2; ++k) scene.geometry.shape_instances.push_back({shape, 0, 0, random_map(uniform)});
+    for (const bool has_textures : {false, true}) {
+      for (uint32_t shape = 0; shape < 5; ++shape) {
+        expect_same(scene, random_hits(uniform, scene, {2 * shape}), {}, has_textures);
+        expect_same(scene, random_hits(uniform, scene, {2 * shape, 2 * shape + 1}), {}, has_textures);
+      }
+      expect_same(scene, random_hits(uniform, scene, {0, 3, 4, 7, 9}), {}, has_textures);
+    }
+  }
+}
+
+TEST(LaneSurfaces, PointsOnTrianglesHaveTheBitsTheyHaveAlone) {
+  Uniform uniform(12);
+  for (int i = 0; i < 300; ++i) {
+    Scene scene;
+    scene.materials.resize(1);
+    TriangleMesh part;
+    for (uint32_t k = 0; k < 40; ++k) {
+      part.positions.push_back(Vec3f(uniform.vector(k % 3 ? 3 : 1e-3)));
+      part.normals.push_back(uniform.direction());
+      const Vec3f t = uniform.direction();
+      part.tangents.push_back({t.x, t.y, t.z, k % 2 ? 1.0f : -1.0f});
+      part.triangles.push_back({k, (k + 1) % 40, (k + 7) % 40});
+    }
+    part.uvs.emplace_back();
+    for (int k = 0; k < 40; ++k) part.uvs[0].push_back({float(uniform(-2, 2)), float(uniform(-2, 2))});
+    TriangleMesh flat = part;
+    flat.normals.clear(), flat.tangents.clear();
+    scene.geometry.meshes = {{"smooth", {part}}, {"flat", {flat}}};
+    for (uint32_t mesh = 0; mesh < 2; ++mesh) {
+      scene.geometry.mesh_instances.push_back({mesh, 0, Affine3d{}});
+      scene.geometry.mesh_instances.push_back({mesh, 0, random_map(uniform)});
+      scene.geometry.mesh_instances.push_back({mesh, 0, random_map(uniform)});
+    }
+    for (uint32_t mesh = 0; mesh < 2; ++mesh) {
+      const Attributes has = attributes(scene.geometry.meshes[mesh].parts[0]);
+      for (const std::vector<uint32_t>& objects :
+           {std::vector{3 * mesh}, std::vector{3 * mesh + 1}, std::vector{3 * mesh, 3 * mesh + 1, 3 * mesh + 2}})
+        expect_same(scene, random_hits(uniform, scene, objects), has, true);
+    }
+  }
+}
+
+/// What clears a position's error is above its rounding, and hides nothing beyond the triangle's own size.
+TEST(LaneSurfaces, NeedlesAskForNoMoreThanTheirLength) {
+  Uniform uniform(13);
+  for (int i = 0; i < 2000; ++i) {
+    Scene scene;
+    scene.materials.resize(1);
+    TriangleMesh part;
+    const double length = std::exp2(uniform(-10, 10)), width = length * std::exp2(uniform(-40, 0));
+    const Vec3d along = Vec3d(uniform.direction()), aside = Vec3d(uniform.direction());
+    part.positions = {Vec3f{}, Vec3f(along * length), Vec3f(aside * width)};
+    part.triangles = {{0, 1, 2}};
+    scene.geometry.meshes = {{"needle", {part}}};
+    scene.geometry.mesh_instances.push_back({0, 0, Affine3d{}});
+    const SurfacePoint s = surface_point(scene, {}, {0, 0, 0}, 0, 0.25f, 0.25f);
+    if (!(dot(s.ng_world, s.ng_world) > 0)) continue;
+    EXPECT_GT(double(s.offset), length * 0x1p-24);
+    EXPECT_LT(double(s.offset), length * 1.001);
+  }
+}
+
+}  // namespace
+}  // namespace alhazen
