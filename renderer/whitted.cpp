@@ -235,8 +235,8 @@ class Whitted {
     const RayWave& wave = arena_.current.rays;
     LaneArray<IntOf<ShadingLanes>> numbers;
     for (size_t k = 0; k < kLanes; ++k) numbers[k] = int32_t(rays[k < rays.size() ? k : 0]);
-    const IntOf<ShadingLanes> number = numbers.load();
-    const auto load = [&](const Lanes<float>& row) { return gather<ShadingLanes>(row.data(), number); };
+    const LanePicker<ShadingLanes> picker(numbers.load(), rays.front(), rays.back());
+    const auto load = [&](const Lanes<float>& row) { return picker.pick<ShadingLanes>(row); };
     const Vec3<ShadingLanes> direction{load(wave.direction.x), load(wave.direction.y), load(wave.direction.z)};
     const BasicRgb<ShadingLanes> weight{load(paths.red), load(paths.green), load(paths.blue)};
     RgbArray<ShadingLanes> light;
@@ -269,11 +269,9 @@ class Whitted {
       numbers[k] = int32_t(i);
       work.hits.ids[k] = {found.object[i], found.part[i], found.primitive[i]};
     }
-    const IntOf<ShadingLanes> number = numbers.load();
-    const auto load = [&](const Lanes<float>& row) { return gather<ShadingLanes>(row.data(), number); };
-    const auto load_number = [&](const Lanes<uint32_t>& row) {
-      return gather<UintOf<ShadingLanes>>(row.data(), number);
-    };
+    const LanePicker<ShadingLanes> picker(numbers.load(), hits.front(), hits.back());
+    const auto load = [&](const Lanes<float>& row) { return picker.pick<ShadingLanes>(row); };
+    const auto load_number = [&](const Lanes<uint32_t>& row) { return picker.pick<UintOf<ShadingLanes>>(row); };
     const ShadingLanes t = load(found.t);
     work.hits.origin.store({load(rays.origin.x), load(rays.origin.y), load(rays.origin.z)});
     work.hits.direction.store({load(rays.direction.x), load(rays.direction.y), load(rays.direction.z)});
