@@ -149,7 +149,7 @@ struct CellWorker {
   bool moving;         // while the shutter is open
   int x0 = 0, y0 = 0;  // of the result in the picture
 
-  /// Fills the cell's pixels; false where it was stopped before they were finished, and left them empty.
+  /// Fills the cell's pixels; false where it was stopped before they were finished: they are to be cleared.
   [[nodiscard]] bool trace(const Cell& cell, WaveArena& arena) const {
     if (control.stop) return false;
     const uint64_t doubts_before = doubt_counts().quad;
@@ -168,7 +168,19 @@ struct CellWorker {
     return finished;
   }
 
+  /// Nothing is seen.
+  void clear(const Cell& cell) const {
+    const auto fill = [&](auto& picture, auto value) {
+      if (picture.pixels.empty()) return;
+      const size_t count = size_t(cell.x1 - cell.x0) * picture.channels.size();
+      for (int y = cell.y0; y < cell.y1; ++y) std::fill_n(picture.at(cell.x0 - x0, y - y0), count, value);
+    };
+    fill(result.color, 0.0f), fill(result.ids, kNone);
+  }
+
   void signature(const Cell& cell, WaveArena& arena) const {
+    arena.clock.enter(Phase::film);
+    clear(cell);
     arena.clock.enter(Phase::generation);
     generate_camera_rays(camera, options, cell, 0, arena);
     const RayWave& rays = arena.pending.rays;
@@ -259,15 +271,15 @@ Cell cell_at(int cx, int cy, const RenderOptions& options) {
           std::min((cy + 1) * kCellSize, options.height)};
 }
 
-/// All pixels `value`, in the memory of others.
+/// In the memory of another; what was seen there may still be.
 template <class T>
-PixelBuffer<T> blank(int width, int height, std::vector<std::string> channels, T value, std::vector<T> memory) {
-  memory.assign(size_t(width) * size_t(height) * channels.size(), value);
+PixelBuffer<T> blank(int width, int height, std::vector<std::string> channels, std::vector<T> memory) {
+  memory.resize(size_t(width) * size_t(height) * channels.size());
   return {width, height, std::move(channels), std::move(memory)};
 }
 
-ColorImage empty_picture(int width, int height, std::vector<float> memory) {
-  return blank(width, height, {"R", "G", "B", "A"}, 0.0f, std::move(memory));
+ColorImage blank_picture(int width, int height, std::vector<float> memory) {
+  return blank(width, height, {"R", "G", "B", "A"}, std::move(memory));
 }
 
 }  // namespace
@@ -283,10 +295,9 @@ RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, con
   RenderResult result;
   const size_t pixels = size_t(options.width) * size_t(options.height);
   if (options.integrator == Integrator::signature) {
-    result.ids =
-        blank(options.width, options.height, {"node", "primitive", "material"}, kNone, std::move(used.ids.pixels));
+    result.ids = blank(options.width, options.height, {"node", "primitive", "material"}, std::move(used.ids.pixels));
   } else {
-    result.color = empty_picture(options.width, options.height, std::move(used.color.pixels));
+    result.color = blank_picture(options.width, options.height, std::move(used.color.pixels));
     result.layers = empty_layers(scene, options.layers, options.width, options.height);
   }
   const ShadingGroups groups(scene);
@@ -303,12 +314,16 @@ RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, con
     const ForkJoin order;
     tbb::parallel_for(0, tiles_x * tiles_y, order.task([&](int tile) {
       const int cx0 = tile % tiles_x * side, cy0 = tile / tiles_x * side;
+      bool whole = true;
       for (int cy = cy0; cy < std::min(cy0 + side, cells_y); ++cy)
         for (int cx = cx0; cx < std::min(cx0 + side, cells_x); ++cx) {
           const Cell cell = cell_at(cx, cy, options);
-          if (!worker.trace(cell, arenas.local())) return;
-          control.pixels_done += uint64_t(cell.x1 - cell.x0) * uint64_t(cell.y1 - cell.y0);
+          if (worker.trace(cell, arenas.local()))
+            control.pixels_done += uint64_t(cell.x1 - cell.x0) * uint64_t(cell.y1 - cell.y0);
+          else
+            whole = false, worker.clear(cell);
         }
+      if (!whole) return;
       if (control.tiles_done++ == 0)
         control.first_tile_ns = std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
     }));
@@ -321,7 +336,7 @@ CellPicture render_cell(const Scene& scene, const AcceleratedScene& accelerated,
                         const RenderOptions& options, RenderControl& control, int x, int y, TraceObserver& observer) {
   const Cell cell = cell_at(x / kCellSize, y / kCellSize, options);
   RenderResult result;
-  result.color = empty_picture(cell.x1 - cell.x0, cell.y1 - cell.y0, {});
+  result.color = blank_picture(cell.x1 - cell.x0, cell.y1 - cell.y0, {});
   WaveArena arena;
   arena.observer = &observer;
   RenderOptions alone = options;  // the observer is told, not the layers
