@@ -85,7 +85,7 @@ Rgb reflected_light(const MetallicRoughnessBsdf& bsdf, const LayerFrames& frames
                     const Vec3f& b) noexcept {
   const float ns = dot(frames.base.n, s);
   if (!(ns > 0)) return light_from_behind(bsdf, frames, s, b);
-  const Vec3f h = normalize(s + b);
+  const Vec3f h = unit_vector(s + b);
   Rgb light = base_light(bsdf, frames, s, b, h);
   if (max_component(bsdf.sheen_color) > 0) {
     const float nb = std::max(0.0f, dot(frames.base.n, b));

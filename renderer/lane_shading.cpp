@@ -82,7 +82,7 @@ Color reflected_light(const BaseLayer<F>& base, const Hit& hit, const Vec3<F>& s
   const F ns = dot(hit.n, s);
   const Mask faces = ns > F(0);
   if (!any_of(faces)) return kBlack;
-  const Vec3<F> h = normalize(s + hit.b);
+  const Vec3<F> h = unit_vector(s + hit.b);
   const F bh = dot(hit.b, h), nb = larger(F(0), dot(hit.n, hit.b));
   const F alpha = larger(F(1e-3f), F(base.roughness * base.roughness));
   const F lobe = isotropic_ggx(alpha, ns, nb, hit.n, h);

@@ -23,22 +23,20 @@ template <class F>
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   if (light.kind == Light::Kind::directional)
     return {BasicRgb<F>(light.intensity), broadcast<F>(Vec3f(-light.direction_world)), F(kInfinity)};
-  const Vec3<D> segment = Vec3<D>(D(light.p_world.x), D(light.p_world.y), D(light.p_world.z)) - p_world;
-  const D squared = dot(segment, segment), root = square_root(squared);
-  const auto apart = convert_mask<F>(squared > D(0));
-  const Vec3<F> to_light = convert<F>(segment / root);
-  const F distance = convert<F>(root);
+  const Vec3<F> segment = convert<F>(Vec3<D>(D(light.p_world.x), D(light.p_world.y), D(light.p_world.z)) - p_world);
+  const F squared = dot(segment, segment), distance = square_root(squared), reciprocal = F(1) / distance;
+  const MaskOf<F> apart = squared > F(0);
+  const Vec3<F> to_light = segment * reciprocal;
   F factor(1);
   if (light.attenuated) {
-    factor = convert<F>(D(D(1) / squared));
+    factor = reciprocal * reciprocal;
     if (light.range > 0) {
       const F share = distance / F(light.range), share2 = share * share;
       factor = factor * clamped(F(F(1) - share2 * share2), 0, 1);
     }
   }
   if (light.kind == Light::Kind::spot) {
-    const Vec3<D> axis(D(light.direction_world.x), D(light.direction_world.y), D(light.direction_world.z));
-    const F cosine = convert<F>(D(-dot(axis, convert<D>(to_light))));
+    const F cosine = -dot(broadcast<F>(Vec3f(light.direction_world)), to_light);
     const float scale = 1 / std::max(0.001f, light.cos_inner - light.cos_outer);
     const F angular = clamped(F((cosine - F(light.cos_outer)) * F(scale)), 0, 1);
     factor = factor * (angular * angular);

@@ -60,13 +60,6 @@ DoubleOf<F> plane_error(const std::array<Vec3<F>, 3>& corner, const DoubleOf<F>&
   return convert<D>(longest) * smaller(D(D(8 * kUlp) * convert<D>(shortest) * convert<D>(middle)), twice_area);
 }
 
-/// `v` over its length; 0 stays 0.
-template <class F>
-Vec3<F> unit(const Vec3<F>& v) {
-  const F squared = dot(v, v);
-  return select(squared > F(0), v * F(F(1) / square_root(squared)), v);
-}
-
 /// Position, normals and their errors. `m`: to the world, or null for a part that lies there, to the same bits as with
 /// the identity; `roundings`: of the position, in units of kUlp.
 template <class F>
@@ -93,13 +86,13 @@ void place(const Corners<F>& corners, const Attributes& has, const F& u, const F
   if (has.normals || has.polygon_normals) {
     const Vec3<F> n = has.normals ? interpolated(corners.n_object, u, v) : corners.n_polygon;
     const Vec3<F> n_world =
-        unit(m ? convert<F>(outer_normal(*m, stretch, convert<D>(n)) * D(D(1) / absolute(stretch))) : n);
+        unit_vector(m ? convert<F>(outer_normal(*m, stretch, convert<D>(n)) * D(D(1) / absolute(stretch))) : n);
     const F n_squared = dot(n_world, n_world);
     s.ns_world = select(MaskOf<F>(n_squared > F(0) && n_squared - n_squared == F(0)), n_world, s.ns_world);
   }
   if (has.tangents) {
     const Vec3<F> t = interpolated(loaded(corners.t_object), u, v);
-    s.tangent_world = unit(m ? convert<F>(transform_vector(*m, convert<D>(t))) : t);
+    s.tangent_world = unit_vector(m ? convert<F>(transform_vector(*m, convert<D>(t))) : t);
     s.bitangent_sign = select(convert_mask<F>(stretch < D(0)), F(-corners.handedness), corners.handedness);
   }
 }
