@@ -156,7 +156,7 @@ template <class F>
 }
 
 /// Elements of several arrays at the same numbers, which may repeat. Where they lie close together, as neighbours in a
-/// wave mostly do, two loads and a permutation take a tenth of the time of a gather.
+/// wave mostly do, two loads and a permutation stand for a gather.
 template <class F>
 class LanePicker {
  public:

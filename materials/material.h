@@ -116,14 +116,6 @@ struct Material {
   MeasuredUse measured;   // read where model is measured
 };
 
-/// The textures that shading in lanes may look up, in its order.
-[[nodiscard]] inline std::array<const TextureUse*, 10> texture_uses(const Material& m) {
-  return {&m.normal_texture,         &m.emissive_texture,           &m.phong.ambient_texture,
-          &m.phong.diffuse_texture,  &m.metallic_roughness_texture, &m.specular_texture,
-          &m.specular_color_texture, &m.base_color_texture,         &m.transmission_texture,
-          &m.occlusion_texture};
-}
-
 /// Coverage of the surface at a point: 1 for OPAQUE, 0 or 1 for MASK, else the base colour's alpha in [0, 1].
 /// Base-colour factor x texture x vertex colour, as glTF says.
 [[nodiscard]] float coverage(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept;

@@ -1,5 +1,6 @@
 #include "renderer/shading_groups.h"
 
+#include <algorithm>
 #include <map>
 
 #include "renderer/media.h"
@@ -24,13 +25,26 @@ bool allows_lanes(const Material& m) {
 }
 
 bool has_textures(const Material& m) {
-  if (m.emissive_texture || m.normal_texture) return true;
-  if (m.model == ShadingModel::phong) return m.phong.ambient_texture || m.phong.diffuse_texture;
-  return m.base_color_texture || m.metallic_roughness_texture || m.occlusion_texture || m.specular_texture ||
-         m.specular_color_texture || m.transmission_texture;
+  const auto uses = texture_uses(m);
+  return std::any_of(uses.begin(), uses.end(), [](const TextureUse* use) { return bool(*use); });
 }
 
 }  // namespace
+
+std::array<const TextureUse*, 8> texture_uses(const Material& m) {
+  static const TextureUse none;
+  if (m.model == ShadingModel::phong)
+    return {&m.normal_texture,
+            &m.emissive_texture,
+            &m.phong.ambient_texture,
+            &m.phong.diffuse_texture,
+            &none,
+            &none,
+            &none,
+            &none};
+  return {&m.normal_texture,         &m.emissive_texture,   &m.metallic_roughness_texture, &m.specular_texture,
+          &m.specular_color_texture, &m.base_color_texture, &m.transmission_texture,       &m.occlusion_texture};
+}
 
 ShadingGroups::ShadingGroups(const Scene& scene) {
   std::map<ShadingGroup, uint32_t> known;

@@ -1,6 +1,7 @@
 // Which hits are shaded side by side: those on one material, in lanes where the material allows.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct ShadingGroup {
 
   friend auto operator<=>(const ShadingGroup&, const ShadingGroup&) = default;
 };
+
+/// The textures that shading in lanes looks up, in its order; at the end perhaps some that are none.
+[[nodiscard]] std::array<const TextureUse*, 8> texture_uses(const Material& material);
 
 /// The groups of a scene; group 0 are the hits that are shaded one by one.
 class ShadingGroups {

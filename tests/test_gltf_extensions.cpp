@@ -256,7 +256,8 @@ TEST(SpecularGlossiness, RoughnessComesFromTheAlphaOfTheTexture) {
   ASSERT_EQ(images.size(), 2u);
   ASSERT_EQ(images[0].width, 2);
   EXPECT_EQ(images[1].channels, 1);
-  EXPECT_EQ(std::get<std::vector<uint8_t>>(images[1].samples), (std::vector<uint8_t>{128, 230, 179}));  // and a smaller level
+  // And a smaller level.
+  EXPECT_EQ(std::get<std::vector<uint8_t>>(images[1].samples), (std::vector<uint8_t>{128, 230, 179}));
 }
 
 TEST(GltfExtensions, AreListedInTheirOrderAndInTheDocumentation) {

@@ -1,32 +1,26 @@
 // Claims about points on surfaces worked out side by side: every lane has the bits that it has alone.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
-#include <random>
 
 #include "renderer/surface.h"
+#include "tests/uniform.h"
 
 namespace alhazen {
 namespace {
 
 using F = ShadingLanes;
 constexpr size_t kLanes = kWidthOf<F>;
+constexpr uint32_t kTriangles = 40;  // of each mesh
 
-class Uniform {
- public:
-  explicit Uniform(unsigned seed) : engine_(seed) {}
-  double operator()(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-  uint32_t below(size_t n) { return uint32_t(engine_() % n); }
-  Vec3d vector(double size) { return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)}; }
-  Vec3f direction() { return normalize(Vec3f(vector(1))); }
+Vec3d vector(Uniform& uniform, float size) {
+  return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
+}
 
- private:
-  std::mt19937 engine_;
-};
-
-/// Turned, stretched and, for every other one, mirrored.
+/// Turned and stretched; about half of them mirror.
 Affine3d random_map(Uniform& uniform) {
-  return {uniform.vector(2), uniform.vector(2), uniform.vector(2), uniform.vector(9)};
+  return {vector(uniform, 2), vector(uniform, 2), vector(uniform, 2), vector(uniform, 9)};
 }
 
 template <class V>
@@ -49,20 +43,20 @@ struct Values<Vec3<T>> {
 LaneHits random_hits(Uniform& uniform, const Scene& scene, const std::vector<uint32_t>& objects) {
   LaneHits hits;
   for (size_t k = 0; k < kLanes; ++k) {
-    const uint32_t object = objects[uniform.below(objects.size())];
+    const uint32_t object = objects[uniform.bits() % objects.size()];
     uint32_t part = 0, primitive = 0;
-    if (!is_shape(scene.geometry, object))
-      primitive =
-          uniform.below(scene.geometry.meshes[scene.geometry.mesh_instances.mesh_of(object)].parts[0].triangles.size());
+    if (!is_shape(scene.geometry, object)) primitive = uniform.bits() % kTriangles;
     hits.ids[k] = {object, part, primitive};
-    hits.origin.set(k, Vec3f(uniform.vector(20))), hits.direction.set(k, uniform.direction());
-    hits.t[k] = float(uniform(0, 20));
-    hits.u[k] = float(uniform(0, 0.5)), hits.v[k] = float(uniform(0, 0.5));
+    hits.origin.set(k, Vec3f(vector(uniform, 20))), hits.direction.set(k, uniform.direction());
+    hits.t[k] = uniform(0, 20);
+    hits.u[k] = uniform(0, 0.5), hits.v[k] = uniform(0, 0.5);
   }
   return hits;
 }
 
-void expect_same(const Scene& scene, const LaneHits& hits, const Attributes& has, bool has_textures) {
+/// Whether every lane has the bits of the hit alone; else the first that has not.
+testing::AssertionResult are_as_alone(const Scene& scene, const LaneHits& hits, const Attributes& has,
+                                      bool has_textures) {
   const BasicSurfacePoint<F> lanes = surface_points(scene, hits, has, has_textures);
   const Values<Vec3d> p(lanes.p_world);
   const Values<float> offset(lanes.offset);
@@ -71,13 +65,15 @@ void expect_same(const Scene& scene, const LaneHits& hits, const Attributes& has
   for (size_t k = 0; k < kLanes; ++k) {
     const Rayf ray{hits.origin.get(k), hits.direction.get(k)};
     const SurfacePoint one = surface_point(scene, ray, hits.ids[k], hits.t[k], hits.u[k], hits.v[k]);
-    EXPECT_TRUE(p.are(k, one.p_world) && offset.are(k, one.offset) && ng.are(k, one.ng_world) &&
-                ns.are(k, one.ns_world))
-        << k;
+    if (!(p.are(k, one.p_world) && offset.are(k, one.offset) && ng.are(k, one.ng_world) && ns.are(k, one.ns_world)))
+      return testing::AssertionFailure() << "lane " << k << ": place or normals";
     if (!has_textures) continue;
-    EXPECT_TRUE(tangent.are(k, one.tangent_world) && sign.are(k, one.bitangent_sign)) << k;
-    EXPECT_TRUE(u.are(k, one.uvs[0].x) && v.are(k, one.uvs[0].y) && rate.are(k, one.uv_per_metre[0])) << k;
+    if (!(tangent.are(k, one.tangent_world) && sign.are(k, one.bitangent_sign)))
+      return testing::AssertionFailure() << "lane " << k << ": tangent";
+    if (!(u.are(k, one.uvs[0].x) && v.are(k, one.uvs[0].y) && rate.are(k, one.uv_per_metre[0])))
+      return testing::AssertionFailure() << "lane " << k << ": texture coordinates";
   }
+  return testing::AssertionSuccess();
 }
 
 TEST(LaneSurfaces, PointsOnShapesHaveTheBitsTheyHaveAlone) {
@@ -87,16 +83,16 @@ TEST(LaneSurfaces, PointsOnShapesHaveTheBitsTheyHaveAlone) {
     scene.materials.resize(1);
     Quadric quadric;
     for (double& c : quadric.coefficients) c = uniform(-2, 2);
-    const Vec3d a = uniform.vector(3), b = uniform.vector(3), c = uniform.vector(3);
+    const Vec3d a = vector(uniform, 3), b = vector(uniform, 3), c = vector(uniform, 3);
     scene.geometry.shapes = {Sphere{uniform(0.1, 3)}, quadric, make_polygon({{a, b, c}}), Box{}, Disk{}};
     for (uint32_t shape = 0; shape < 5; ++shape)
       for (int k = 0; k < 2; ++k) scene.geometry.shape_instances.push_back({shape, 0, 0, random_map(uniform)});
     for (const bool has_textures : {false, true}) {
       for (uint32_t shape = 0; shape < 5; ++shape) {
-        expect_same(scene, random_hits(uniform, scene, {2 * shape}), {}, has_textures);
-        expect_same(scene, random_hits(uniform, scene, {2 * shape, 2 * shape + 1}), {}, has_textures);
+        EXPECT_TRUE(are_as_alone(scene, random_hits(uniform, scene, {2 * shape}), {}, has_textures));
+        EXPECT_TRUE(are_as_alone(scene, random_hits(uniform, scene, {2 * shape, 2 * shape + 1}), {}, has_textures));
       }
-      expect_same(scene, random_hits(uniform, scene, {0, 3, 4, 7, 9}), {}, has_textures);
+      EXPECT_TRUE(are_as_alone(scene, random_hits(uniform, scene, {0, 3, 4, 7, 9}), {}, has_textures));
     }
   }
 }
@@ -107,15 +103,15 @@ TEST(LaneSurfaces, PointsOnTrianglesHaveTheBitsTheyHaveAlone) {
     Scene scene;
     scene.materials.resize(1);
     TriangleMesh part;
-    for (uint32_t k = 0; k < 40; ++k) {
-      part.positions.push_back(Vec3f(uniform.vector(k % 3 ? 3 : 1e-3)));
+    for (uint32_t k = 0; k < kTriangles; ++k) {
+      part.positions.push_back(Vec3f(vector(uniform, k % 3 ? 3 : 1e-3f)));
       part.normals.push_back(uniform.direction());
       const Vec3f t = uniform.direction();
       part.tangents.push_back({t.x, t.y, t.z, k % 2 ? 1.0f : -1.0f});
-      part.triangles.push_back({k, (k + 1) % 40, (k + 7) % 40});
+      part.triangles.push_back({k, (k + 1) % kTriangles, (k + 7) % kTriangles});
     }
     part.uvs.emplace_back();
-    for (int k = 0; k < 40; ++k) part.uvs[0].push_back({float(uniform(-2, 2)), float(uniform(-2, 2))});
+    for (int k = 0; k < int(kTriangles); ++k) part.uvs[0].push_back({uniform(-2, 2), uniform(-2, 2)});
     TriangleMesh flat = part;
     flat.normals.clear(), flat.tangents.clear();
     scene.geometry.meshes = {{"smooth", {part}}, {"flat", {flat}}};
@@ -128,7 +124,7 @@ TEST(LaneSurfaces, PointsOnTrianglesHaveTheBitsTheyHaveAlone) {
       const Attributes has = attributes(scene.geometry.meshes[mesh].parts[0]);
       for (const std::vector<uint32_t>& objects :
            {std::vector{3 * mesh}, std::vector{3 * mesh + 1}, std::vector{3 * mesh, 3 * mesh + 1, 3 * mesh + 2}})
-        expect_same(scene, random_hits(uniform, scene, objects), has, true);
+        EXPECT_TRUE(are_as_alone(scene, random_hits(uniform, scene, objects), has, true));
     }
   }
 }

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <random>
 
 #include "core/angle.h"
 #include "materials/base_layer.h"
@@ -11,6 +10,7 @@
 #include "materials/texture.h"
 #include "renderer/environment.h"
 #include "renderer/light.h"
+#include "tests/uniform.h"
 
 namespace alhazen {
 namespace {
@@ -19,22 +19,6 @@ using F = ShadingLanes;
 constexpr size_t kLanes = kWidthOf<F>;
 
 bool same_bits(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
-class Uniform {
- public:
-  explicit Uniform(unsigned seed) : engine_(seed) {}
-  float operator()(float low, float high) { return std::uniform_real_distribution<float>(low, high)(engine_); }
-  uint32_t bits() { return uint32_t(engine_()); }
-  Vec3f direction() {
-    for (;;) {
-      const Vec3f v{(*this)(-1, 1), (*this)(-1, 1), (*this)(-1, 1)};
-      if (dot(v, v) > 0.01f && dot(v, v) < 1) return normalize(v);
-    }
-  }
-
- private:
-  std::mt19937 engine_;
-};
 
 TEST(ShadingLanes, AnglesAreThoseOfTheLibraryToFewRoundings) {
   Uniform uniform(1);
