@@ -191,46 +191,4 @@ class LanePicker {
   bool is_close_;
 };
 
-/// Appends the values whose bit is set, in their order.
-template <class T, size_t n>
-void append_lanes(Lanes<T>& to, uint32_t lanes, const std::array<T, n>& values) {
-  static_assert(sizeof(T) == 4);
-  const size_t at = to.size();
-  to.resize(at + n);
-#if defined __AVX512F__
-  if constexpr (n == 16) {
-    const __m512i packed = _mm512_maskz_compress_epi32(__mmask16(lanes), _mm512_loadu_si512(values.data()));
-    _mm512_storeu_si512(&to[at], packed);
-    return to.resize(at + size_t(std::popcount(lanes)));
-  }
-#endif
-  size_t end = at;
-  for (; lanes; lanes &= lanes - 1) to[end++] = values[size_t(std::countr_zero(lanes))];
-  to.resize(end);
-}
-
-/// Appends, lane after lane, the first and then the second value of those whose bit is set.
-template <class T, size_t n>
-void append_pairs(Lanes<T>& to, uint32_t first_lanes, const std::array<T, n>& first, uint32_t second_lanes,
-                  const std::array<T, n>& second) {
-  if (second_lanes == 0) return append_lanes(to, first_lanes, first);
-  if (first_lanes == 0) return append_lanes(to, second_lanes, second);
-#if defined __AVX512F__ && defined __BMI2__
-  if constexpr (n == 16) {
-    const __m512i low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23),
-                  a = _mm512_loadu_si512(first.data()), b = _mm512_loadu_si512(second.data());
-    const uint32_t lanes = _pdep_u32(first_lanes, 0x55555555u) | _pdep_u32(second_lanes, 0xAAAAAAAAu);
-    const auto append = [&](const __m512i& pairs, uint32_t bits) {
-      append_lanes(to, bits, std::bit_cast<std::array<T, n>>(pairs));
-    };
-    append(_mm512_permutex2var_epi32(a, low, b), lanes & 0xFFFF);
-    return append(_mm512_permutex2var_epi32(a, _mm512_add_epi32(low, _mm512_set1_epi32(8)), b), lanes >> 16);
-  }
-#endif
-  for (size_t k = 0; k < n; ++k) {
-    if (first_lanes >> k & 1) to.push(first[k]);
-    if (second_lanes >> k & 1) to.push(second[k]);
-  }
-}
-
 }  // namespace alhazen

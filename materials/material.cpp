@@ -10,16 +10,17 @@ BasicRgba<F> base_color(const Material& material, const TextureTable& table, con
           F(material.base_color.a) * texel.a * inputs.color.a};
 }
 
-float coverage_of_alpha(const Material& material, float alpha) {
+template <class F>
+F coverage_of_alpha(const Material& material, const F& alpha) {
   switch (material.alpha_mode) {
     case AlphaMode::opaque:
-      return 1;
+      return F(1);
     case AlphaMode::mask:
-      return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
+      return select(alpha >= F(material.alpha_cutoff), F(1), F(0));
     case AlphaMode::blend:
-      return alpha > 0 ? std::min(alpha, 1.0f) : 0.0f;
+      return unit_clamped(alpha);
   }
-  return 1;
+  return F(1);
 }
 
 bool may_transmit(const Material& material) {
@@ -51,10 +52,13 @@ Rgb half_thickness_transmittance(const Volume& volume, const TextureTable& table
 
 }  // namespace
 
-float coverage(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept {
-  if (material.alpha_mode == AlphaMode::opaque) return 1;
+template <class F>
+F coverage(const Material& material, const TextureTable& table, const BasicSurfaceInputs<F>& inputs) noexcept {
+  if (material.alpha_mode == AlphaMode::opaque) return F(1);
   return coverage_of_alpha(material, base_color(material, table, inputs).a);
 }
+template float coverage(const Material&, const TextureTable&, const SurfaceInputs&) noexcept;
+template ShadingLanes coverage(const Material&, const TextureTable&, const BasicSurfaceInputs<ShadingLanes>&) noexcept;
 
 Rgb straight_transmittance(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept {
   const bool transmits = may_transmit(material);

@@ -118,7 +118,9 @@ struct Material {
 
 /// Coverage of the surface at a point: 1 for OPAQUE, 0 or 1 for MASK, else the base colour's alpha in [0, 1].
 /// Base-colour factor x texture x vertex colour, as glTF says.
-[[nodiscard]] float coverage(const Material& material, const TextureTable& table, const SurfaceInputs& inputs) noexcept;
+template <class F = float>
+[[nodiscard]] F coverage(const Material& material, const TextureTable& table,
+                         const BasicSurfaceInputs<F>& inputs) noexcept;
 
 /// The share of light that passes straight through the surface: 1 in a hole of MASK; (1 - a) + a t for BLEND; else t,
 /// where t is Phong's transmissionFactor, or glTF's transmission x base colour; into or out of a body also what half of

@@ -117,6 +117,16 @@ void shade_metallic_roughness(const Scene& scene, const BaseLayer<F>& base, cons
           out.mirror);
 }
 
+/// What the surface does not cover goes on; what it covers is left to be shaded.
+void let_through(const Material& material, const TextureTable& table, const BasicSurfaceInputs<F>& inputs,
+                 const LaneWork& work, Hit& hit, LaneLight& out) {
+  const F alpha = coverage(material, table, inputs);
+  out.alpha.store(alpha);
+  set_ray(hit, hit.d, hit.weight * (F(1) - alpha), alpha < F(1), out.straight);
+  out.straight.cone_spread = work.cone_spread;
+  hit.weight = select(alpha > F(0), hit.weight * alpha, kBlack);
+}
+
 /// Cones serve textures alone, so that a scene without any does not pay for the curvature.
 void set_cones(const Scene& scene, const ShadingGroup& group, const LaneWork& work, const Hit& hit, LaneLight& out) {
   const F width = work.cone_width.load(), spread = work.cone_spread.load();
@@ -142,26 +152,31 @@ void shade_lanes(const Scene& scene, const ShadingGroup& group, const LaneWork& 
   hit.d = work.hits.direction.load(), hit.b = -hit.d;
   hit.surface.footprint = footprint(work.cone_width.load(), hit.surface.ng_world, hit.d);
   hit.weight = work.weight.load();
+  for (LaneRays* rays : {&out.straight, &out.mirror, &out.refracted}) rays->lanes = 0;
+  for (LaneRays& rays : out.shadow) rays.lanes = 0;
   TextureLookup<F> lookup;
   hit.surface.lookup = &lookup;
   clock.enter_part(group.has_textures ? Phase::textures : Phase::shading);
   const BasicSurfaceInputs<F> inputs = hit.surface.inputs();
   if (group.has_textures)
     prefetch(table, texture_uses(material), material.model == ShadingModel::phong ? point_inputs(inputs) : inputs);
+  if (material.alpha_mode == AlphaMode::blend) let_through(material, table, inputs, work, hit, out);
   hit.n = shading_normal(hit.surface, material.normal_texture, material.normal_scale, table);
   hit.enters = dot(hit.n, hit.d) < F(0);
   hit.n = select(hit.enters, hit.n, -hit.n);
-  out.emits = max_component(material.emissive) > 0;
+  const bool unlit = material.model == ShadingModel::unlit;
+  out.emits = unlit || max_component(material.emissive) > 0, out.reflects = !unlit;
   if (out.emits) out.emission.store(hit.weight * emission(material, table, inputs));
-  out.mirror.lanes = out.refracted.lanes = 0;
   if (material.model == ShadingModel::phong) {
     const auto bsdf = phong_bsdf(material, table, inputs);
     clock.enter_part(Phase::shading);
     shade_phong(scene, bsdf, hit, out);
-  } else {
+  } else if (out.reflects) {
     const BaseLayer<F> base = base_layer(material, table, inputs, material.ior);
     clock.enter_part(Phase::shading);
     shade_metallic_roughness(scene, base, hit, out);
+  } else {
+    clock.enter_part(Phase::shading);
   }
   if ((out.mirror.lanes | out.refracted.lanes) != 0) set_cones(scene, group, work, hit, out);
 }

@@ -29,11 +29,12 @@ struct LaneWork {
 
 /// What comes out.
 struct LaneLight {
-  bool emits = false;
-  RgbArray<ShadingLanes> emission, ambient;  // weighed; emission only where the material emits
+  bool emits = false, reflects = false;      // whether the material does
+  RgbArray<ShadingLanes> emission, ambient;  // weighed, where it does
   std::vector<LaneRays> shadow;              // by light
-  LaneRays mirror, refracted;
-  LaneArray<ShadingLanes> roughness;  // of the surface
+  LaneRays straight, mirror, refracted;
+  LaneArray<ShadingLanes> alpha;      // the surface's coverage, where a ray goes straight on
+  LaneArray<ShadingLanes> roughness;  // of the surface, where others leave it
 };
 
 /// The clock is in Phase::shading before and after.

@@ -10,6 +10,8 @@ namespace alhazen {
 /// What a ray is for. A `straight` ray continues the view of its camera ray through surfaces with alpha.
 enum class RayKind : uint32_t { camera, mirror, refracted, straight };
 
+[[nodiscard]] inline bool is_view(RayKind kind) { return kind == RayKind::camera || kind == RayKind::straight; }
+
 /// What a ray brings along: on whose behalf it is traced, and through what.
 struct Path {
   uint32_t pixel = 0;  // index of the sample's pixel within the cell
@@ -20,6 +22,11 @@ struct Path {
   Cone cone{};          // around it, as wide as its share of the picture
   float roughness = 0;  // of the surfaces that sent it here: how blurred it sees the environment
 };
+
+/// What is left of a ray's weight after a distance.
+[[nodiscard]] inline Rgb arriving_weight(const Path& path, const std::vector<Material>& materials, float t) {
+  return path.media.count > 0 ? path.weight * transmittance(path.media, materials, t) : path.weight;
+}
 
 /// The paths of a wave.
 struct PathRows {

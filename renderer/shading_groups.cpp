@@ -8,16 +8,16 @@
 namespace alhazen {
 namespace {
 
-/// Materials whose shading is a straight line: what layers, bodies and coverage add is shaded one by one.
+/// Materials whose shading is a straight line: what layers and bodies add is shaded one by one.
 bool allows_lanes(const Material& m) {
-  if (m.alpha_mode == AlphaMode::blend || bounds_body(m)) return false;
+  if (bounds_body(m)) return false;
   switch (m.model) {
     case ShadingModel::phong:
+    case ShadingModel::unlit:
       return true;
     case ShadingModel::metallic_roughness:
       return !(m.clearcoat.factor > 0 || max_component(m.sheen.color) > 0 || m.anisotropy.strength > 0 ||
                m.iridescence.factor > 0 || m.diffuse_transmission.factor > 0 || m.transmission > 0);
-    case ShadingModel::unlit:
     case ShadingModel::measured:
       return false;
   }
@@ -33,15 +33,13 @@ bool has_textures(const Material& m) {
 
 std::array<const TextureUse*, 8> texture_uses(const Material& m) {
   static const TextureUse none;
+  const TextureUse* const alpha = m.alpha_mode == AlphaMode::blend ? &m.base_color_texture : &none;
+  if (m.model == ShadingModel::unlit)
+    return {&m.normal_texture, &m.base_color_texture, &none, &none, &none, &none, &none, &none};
   if (m.model == ShadingModel::phong)
-    return {&m.normal_texture,
-            &m.emissive_texture,
-            &m.phong.ambient_texture,
-            &m.phong.diffuse_texture,
-            &none,
-            &none,
-            &none,
-            &none};
+    return {
+        alpha, &m.normal_texture, &m.emissive_texture, &m.phong.ambient_texture, &m.phong.diffuse_texture, &none, &none,
+        &none};
   return {&m.normal_texture,         &m.emissive_texture,   &m.metallic_roughness_texture, &m.specular_texture,
           &m.specular_color_texture, &m.base_color_texture, &m.transmission_texture,       &m.occlusion_texture};
 }

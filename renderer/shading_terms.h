@@ -41,6 +41,12 @@ template <class F>
   return select(below < F(0), normalize(mirrored - (F(2) * below) * ng), mirrored);
 }
 
+/// The roughness of two surfaces one after the other.
+template <class F>
+[[nodiscard]] F blurred_by(const F& before, const F& then) {
+  return smaller(F(square_root(F(before * before + then * then))), F(1));
+}
+
 /// What a white Lambertian surface reflects of the light without a place.
 template <class F>
 [[nodiscard]] BasicRgb<F> ambient_light(const Scene& scene, const Vec3<F>& n) {

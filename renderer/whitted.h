@@ -29,10 +29,16 @@ struct WaveArena {
   LaneLight lane_light;
   Lanes<float> time_of_pixel;              // of the shutter, of the samples at hand; of no elements where nothing moves
   std::array<uint64_t, 4> rays_by_kind{};  // by RayKind
-  uint64_t shadow_rays = 0;
+  size_t shadows_waiting = 0;              // in `shadow_by_light`
+  uint64_t shadow_rays = 0;                // traced
   PhaseClock clock;
   CellWaves* log = nullptr;           // where waves are copied to, if at all
   TraceObserver* observer = nullptr;  // who is told of every ray, if anybody
+
+  /// Of the shutter, when all rays of the sample at hand are traced.
+  [[nodiscard]] float time_of(uint32_t pixel_of_cell) const {
+    return time_of_pixel.size() > 0 ? time_of_pixel[pixel_of_cell] : 0;
+  }
 };
 
 /// Follows the rays in `arena.pending` to their ends and adds their light to `radiance`, one value for each pixel of

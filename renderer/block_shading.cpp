@@ -1,0 +1,184 @@
+#include "renderer/block_shading.h"
+
+#include <bit>
+
+#include "core/lane_append.h"
+#include "core/lane_memory.h"
+#include "renderer/shading_terms.h"
+
+namespace alhazen {
+namespace {
+
+using F = ShadingLanes;
+using U = UintOf<F>;
+constexpr size_t kLanes = kWidthOf<F>;
+
+/// Lanes beyond the last hit are as the first.
+void load_lanes(const Scene& scene, const WaveArena& arena, std::span<const uint32_t> hits, LaneWork& work) {
+  const RayWave& rays = arena.current.rays;
+  const PathRows& paths = arena.current.paths;
+  const HitWave& found = arena.hits;
+  LaneArray<IntOf<F>> numbers;
+  for (size_t k = 0; k < kLanes; ++k) {
+    const uint32_t i = hits[k < hits.size() ? k : 0];
+    numbers[k] = int32_t(i);
+    work.hits.ids[k] = {found.object[i], found.part[i], found.primitive[i]};
+  }
+  const LanePicker<F> picker(numbers.load(), hits.front(), hits.back());
+  const auto load = [&](const Lanes<float>& row) { return picker.pick<F>(row); };
+  const auto load_number = [&](const Lanes<uint32_t>& row) { return picker.pick<U>(row); };
+  const F t = load(found.t);
+  work.hits.origin.store({load(rays.origin.x), load(rays.origin.y), load(rays.origin.z)});
+  work.hits.direction.store({load(rays.direction.x), load(rays.direction.y), load(rays.direction.z)});
+  work.hits.t.store(t), work.hits.u.store(load(found.u)), work.hits.v.store(load(found.v));
+  work.weight.store({load(paths.red), load(paths.green), load(paths.blue)});
+  for (size_t k = 0; k < kLanes && paths.media.size() > 0; ++k) {
+    const auto i = size_t(numbers[k]);
+    work.weight.set(k, arriving_weight(paths[i], scene.materials, found.t[i]));
+  }
+  const BasicCone<F> cone = BasicCone<F>{load(paths.cone_width), load(paths.cone_spread)}.at(t);
+  work.cone_width.store(cone.width), work.cone_spread.store(cone.spread);
+  work.roughness.store(load(paths.roughness));
+  work.pixel.store(load_number(paths.pixel)), work.depth.store(load_number(paths.depth));
+}
+
+/// Hit by hit: some may be of one pixel, whose sum depends on the order.
+void add_to_pixels(const LaneLight& light, const LaneWork& work, size_t hits, Rgb* radiance) {
+  for (size_t k = 0; k < hits; ++k) {
+    Rgb& pixel = radiance[work.pixel[k]];
+    if (light.emits) pixel += light.emission.get(k);
+    if (light.reflects) pixel += light.ambient.get(k);
+  }
+}
+
+void push_shadows(const LaneRays& rays, uint32_t lanes, const LaneWork& work, ShadowWave& wave) {
+  const auto append = [&](Lanes<float>& row, const LaneArray<F>& values) { append_lanes(row, lanes, values.values); };
+  append(wave.rays.origin.x, rays.origin.x), append(wave.rays.origin.y, rays.origin.y);
+  append(wave.rays.origin.z, rays.origin.z), append(wave.rays.direction.x, rays.direction.x);
+  append(wave.rays.direction.y, rays.direction.y), append(wave.rays.direction.z, rays.direction.z);
+  append(wave.rays.t_min, LaneArray<F>{}), append(wave.rays.t_max, rays.t_max);
+  append(wave.red, rays.weight.r), append(wave.green, rays.weight.g), append(wave.blue, rays.weight.b);
+  append_lanes(wave.pixel, lanes, work.pixel.values);
+}
+
+/// Rays of one kind that leave a block: those that are traced, and what is not the same for all kinds.
+struct Branch {
+  const LaneRays& rays;
+  uint32_t lanes;
+  LaneArray<U> depth;
+  std::array<RayKind, kLanes> kind;
+  LaneArray<F> roughness;
+
+  Branch(const LaneRays& leaving, uint32_t present, const U& depths, const RenderOptions& options)
+      : rays(leaving), lanes(leaving.lanes & present) {
+    if (lanes == 0) return;
+    depth.store(depths);
+    const F largest = max_component(rays.weight.load());
+    const auto matters = largest >= F(options.min_weight) && largest > F(0);
+    lanes &= lane_bits(matters && convert_mask<F>(depths <= U(uint32_t(options.max_depth))));
+  }
+};
+
+/// Straight on, a view stays one; what passes a texel that is not there at all gets no deeper.
+Branch straight_branch(const LaneLight& light, const LaneWork& work, std::span<const uint32_t> hits,
+                       const PathRows& paths, uint32_t present, const RenderOptions& options) {
+  U depth = work.depth.load();
+  if (light.straight.lanes != 0) depth = depth + select(convert_mask<U>(light.alpha.load() > F(0)), U(1), U(0));
+  Branch branch(light.straight, present, depth, options);
+  for (size_t k = 0; k < hits.size() && branch.lanes != 0; ++k) {
+    const RayKind kind = paths.kind[hits[k]];
+    branch.kind[k] = is_view(kind) ? RayKind::straight : kind;
+  }
+  branch.roughness = work.roughness;
+  return branch;
+}
+
+Branch bounced_branch(const LaneRays& rays, RayKind kind, const LaneLight& light, const LaneWork& work,
+                      uint32_t present, const RenderOptions& options) {
+  Branch branch(rays, present, work.depth.load() + U(1), options);
+  branch.kind.fill(kind);
+  if (branch.lanes != 0) branch.roughness.store(blurred_by(work.roughness.load(), light.roughness.load()));
+  return branch;
+}
+
+/// The rays of a block, in the order in which they would be spawned one by one: hit by hit, and of each as listed.
+void push_branches(const std::array<Branch, 3>& branches, std::span<const uint32_t> hits, const LaneWork& work,
+                   const PathRows& from, PathWave& to) {
+  const uint32_t any = branches[0].lanes | branches[1].lanes | branches[2].lanes;
+  if (any == 0) return;
+  size_t next = to.size();
+  for (uint32_t lanes = from.media.size() > 0 ? any : 0; lanes; lanes &= lanes - 1) {
+    const auto k = size_t(std::countr_zero(lanes));
+    const Media media = from.media_of(hits[k]);
+    for (const Branch& branch : branches)
+      if (branch.lanes >> k & 1) to.paths.set_media(next++, media);
+  }
+  const auto append = [&](auto& row, const auto& values_of) {
+    using T = std::remove_cvref_t<decltype(row[0])>;
+    const auto chosen = [&](const Branch& branch) { return ChosenLanes<T, kLanes>{branch.lanes, &values_of(branch)}; };
+    append_in_turn(row, std::array{chosen(branches[0]), chosen(branches[1]), chosen(branches[2])});
+  };
+  const auto append_same = [&](Lanes<float>& row, float value) {
+    std::array<float, kLanes> same;
+    same.fill(value);
+    append(
+        row, [&](const Branch&) -> const auto& { return same; });
+  };
+  append(
+      to.rays.origin.x, [](const Branch& b) -> const auto& { return b.rays.origin.x.values; });
+  append(
+      to.rays.origin.y, [](const Branch& b) -> const auto& { return b.rays.origin.y.values; });
+  append(
+      to.rays.origin.z, [](const Branch& b) -> const auto& { return b.rays.origin.z.values; });
+  append(
+      to.rays.direction.x, [](const Branch& b) -> const auto& { return b.rays.direction.x.values; });
+  append(
+      to.rays.direction.y, [](const Branch& b) -> const auto& { return b.rays.direction.y.values; });
+  append(
+      to.rays.direction.z, [](const Branch& b) -> const auto& { return b.rays.direction.z.values; });
+  append_same(to.rays.t_min, Rayf{}.t_min), append_same(to.rays.t_max, Rayf{}.t_max);
+  append(
+      to.paths.red, [](const Branch& b) -> const auto& { return b.rays.weight.r.values; });
+  append(
+      to.paths.green, [](const Branch& b) -> const auto& { return b.rays.weight.g.values; });
+  append(
+      to.paths.blue, [](const Branch& b) -> const auto& { return b.rays.weight.b.values; });
+  append(
+      to.paths.kind, [](const Branch& b) -> const auto& { return b.kind; });
+  append(
+      to.paths.cone_spread, [](const Branch& b) -> const auto& { return b.rays.cone_spread.values; });
+  append(
+      to.paths.cone_width, [&](const Branch&) -> const auto& { return work.cone_width.values; });
+  append(
+      to.paths.pixel, [&](const Branch&) -> const auto& { return work.pixel.values; });
+  append(
+      to.paths.depth, [](const Branch& b) -> const auto& { return b.depth.values; });
+  append(
+      to.paths.roughness, [](const Branch& b) -> const auto& { return b.roughness.values; });
+}
+
+}  // namespace
+
+void shade_block(const Scene& scene, const RenderOptions& options, const ShadingGroup& group,
+                 std::span<const uint32_t> hits, WaveArena& arena, Rgb* radiance) {
+  LaneWork& work = arena.lane_work;
+  LaneLight& light = arena.lane_light;
+  load_lanes(scene, arena, hits, work);
+  shade_lanes(scene, group, work, arena.clock, light);
+  add_to_pixels(light, work, hits.size(), radiance);
+  const uint32_t present = (1u << hits.size()) - 1;
+  for (size_t k = 0; k < light.shadow.size(); ++k) {
+    const uint32_t lanes = light.shadow[k].lanes & present;
+    if (lanes == 0) continue;
+    push_shadows(light.shadow[k], lanes, work, arena.shadow_by_light[k]);
+    arena.shadows_waiting += size_t(std::popcount(lanes));
+  }
+  if (((light.straight.lanes | light.mirror.lanes | light.refracted.lanes) & present) == 0) return;
+  const PathRows& from = arena.current.paths;
+  push_branches({straight_branch(light, work, hits, from, present, options),
+                 bounced_branch(light.mirror, RayKind::mirror, light, work, present, options),
+                 bounced_branch(light.refracted, RayKind::refracted, light, work, present, options)},
+                hits, work, from, arena.pending);
+}
+
+}  // namespace alhazen
