@@ -37,6 +37,8 @@ struct BareCall {
   Coherence coherence = Coherence::incoherent;
 };
 
+struct BuiltScene;
+
 /// Immutable but for `update`, so every query is safe from any thread. `geometry` and the filter's data must outlive
 /// it: vertices, indices and shapes are read in place.
 class AcceleratedScene {
@@ -54,7 +56,7 @@ class AcceleratedScene {
   AcceleratedScene& operator=(const AcceleratedScene&) = delete;
 
   /// The closest hit of every ray in its [t_min, t_max], surfaces' holes left out. The answers depend on the wave
-  /// alone: rays are traced in packets of consecutive lanes. Resizes `hits`.
+  /// alone: rays are traced in packets of consecutive lanes, or one by one. Resizes `hits`.
   void intersect(const RayWave& rays_world, Coherence coherence, HitWave& hits) const noexcept;
 
   /// How much light arrives along every segment [t_min, t_max]: the product of the transmittances of the surfaces
@@ -73,9 +75,7 @@ class AcceleratedScene {
   [[nodiscard]] double seconds_of(const BareCall& call, const RayWave& rays_world) const;
 
  private:
-  struct Impl;
-  struct Traversal;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<BuiltScene> built_;
 };
 
 /// "Embree 3.13.5, 16 lanes": what traverses, and how wide on this machine.

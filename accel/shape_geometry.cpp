@@ -67,6 +67,18 @@ void occlude_lane(const RTCOccludedFunctionNArguments* args, unsigned i) {
   }
 }
 
+/// The lanes of a packet whose rays may meet the member that is asked for.
+template <class Arguments>
+uint32_t lanes_to_ask(const Arguments* args, const ShapeGroup& group, const RayRows& rays) {
+  if (args->N > 1) {
+    const WaveQuery& query = embree::query_of<WaveQuery>(args);
+    ++query.shape_calls,
+        query.shape_lanes +=
+        with_width(args->N, [&](auto width) { return uint64_t(std::popcount(active_lanes<width>(args->valid))); });
+  }
+  return lanes_that_may_meet(group.balls[args->primID], rays, args->valid);
+}
+
 /// A member whose shape is of kind S, and the rays of a packet.
 template <class S, class Arguments>
 struct Meeting {
@@ -107,7 +119,7 @@ template <class S>
 template <class S>
 void intersect_group(const RTCIntersectFunctionNArguments* args) {
   const Meeting<S, RTCIntersectFunctionNArguments> m(args);
-  const uint32_t lanes = lanes_that_may_meet(m.group.balls[args->primID], m.rays, args->valid);
+  const uint32_t lanes = lanes_to_ask(args, m.group, m.rays);
   for (unsigned i = 0; i < args->N; ++i)
     if (args->valid[i]) embree::reject(args, i);  // until a crossing is found to count
   const auto one_by_one = [&](unsigned i) { intersect_lane(args, i); };
@@ -141,7 +153,7 @@ template <class S>
 template <class S>
 void occlude_group(const RTCOccludedFunctionNArguments* args) {
   const Meeting<S, RTCOccludedFunctionNArguments> m(args);
-  const uint32_t lanes = lanes_that_may_meet(m.group.balls[args->primID], m.rays, args->valid);
+  const uint32_t lanes = lanes_to_ask(args, m.group, m.rays);
   for (unsigned i = 0; i < args->N; ++i)
     if (args->valid[i]) embree::reject(args, i);
   const auto one_by_one = [&](unsigned i) { occlude_lane(args, i); };
