@@ -128,6 +128,11 @@ template <class F = float>
 [[nodiscard]] Rgb straight_transmittance(const Material& material, const TextureTable& table,
                                          const SurfaceInputs& inputs) noexcept;
 
+/// Whether textures say which light passes at a point: those that `coverage` and `straight_transmittance` look up.
+[[nodiscard]] inline bool has_passing_textures(const Material& material) noexcept {
+  return material.base_color_texture || material.transmission_texture || material.volume.thickness_texture;
+}
+
 /// cutout for MASK; transparent for BLEND and for a transmission that may exceed 0; else opaque.
 [[nodiscard]] Opacity opacity(const Material& material) noexcept;
 

@@ -693,15 +693,24 @@ void measure_shape_uvs(const Scene& scene, const HitIds& ids, float width, float
 }
 
 SurfacePoint surface_point(const Scene& scene, const Crossing& crossing) noexcept {
-  if (is_shape(scene.geometry, crossing.object))
-    return shape_point(scene, crossing.object, int(crossing.part),
-                       shape_instance(scene.geometry, crossing.object).world_from_object, crossing.p_object);
+  SurfacePoint s;
+  if (is_shape(scene.geometry, crossing.object)) {
+    const ShapeInstance& placed = shape_instance(scene.geometry, crossing.object);
+    s.material = placed.material, s.uv_count = 1;
+    const auto uv_on = [&](const auto& shape) {
+      const int face = int(crossing.part);
+      return texture_coordinates(shape, project(shape, crossing.p_object, face), face);
+    };
+    if (has_passing_textures(scene.materials[s.material]))
+      s.uvs[0] = std::visit(uv_on, scene.geometry.shapes[placed.shape]);
+    return s;
+  }
   const uint32_t mesh = scene.geometry.mesh_instances.mesh_of(crossing.object);
   const TriangleMesh& part = scene.geometry.meshes[mesh].parts[crossing.part];
-  SurfacePoint s;
   s.material = part.material;
   Attributes has = attributes(part);
   has.normals = has.tangents = has.polygon_normals = false;
+  if (!has_passing_textures(scene.materials[s.material])) has.uv_sets = 0;
   const Corners<float> corners = corners_of(PosedPart(part, 0, nullptr, 0), part, has, crossing.primitive);
   interpolate_attributes(corners, has, crossing.u, crossing.v, s);
   return s;

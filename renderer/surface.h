@@ -108,7 +108,7 @@ struct LaneHits {
 /// from surface_point.
 void measure_shape_uvs(const Scene& scene, const HitIds& ids, float width, float time, SurfacePoint& point) noexcept;
 
-/// Only what texture look-ups need, for crossings met in traversal.
+/// Only what `coverage` and `straight_transmittance` ask for, of crossings met in traversal.
 [[nodiscard]] SurfacePoint surface_point(const Scene& scene, const Crossing& crossing) noexcept;
 
 /// Where a ray that leaves `point` along `direction` starts: on the exact side of the surface, further off than the
