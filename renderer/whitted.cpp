@@ -92,12 +92,12 @@ class Whitted {
   /// Group by group, so that those on one material can go side by side. An observer gets to see them one by one, in the
   /// same order.
   void shade_wave() {
-    sort_by_group();
+    sort_by_group(arena_.hits, scene_.geometry, groups_, arena_.hits_by_group);
     const bool lanes = !observed && arena_.time_of_pixel.size() == 0;
-    uint32_t* const rays = arena_.sorted.data();
+    uint32_t* const rays = arena_.hits_by_group.sorted.data();
     size_t first = 0;
     for (size_t group = 0; group < groups_.size(); ++group) {
-      const size_t end = arena_.group_ends[group];
+      const size_t end = arena_.hits_by_group.ends[group];
       for (; first < end; first += std::min(kLanes, end - first)) {
         const std::span<const uint32_t> block(rays + first, std::min(kLanes, end - first));
         if (lanes && groups_[group].in_lanes)
@@ -115,33 +115,6 @@ class Whitted {
       tell([&](TraceObserver& observer) { observer.look_at(i); });
       shade_hit(scene_, options_, sink_, i);
     }
-  }
-
-  /// Counts, then places: `sorted` holds the wave's numbers group after group, each in the wave's order, and what
-  /// misses after the last group.
-  void sort_by_group() {
-    const HitWave& hits = arena_.hits;
-    const size_t n = arena_.current.size(), misses = groups_.size();
-    Lanes<uint32_t>&ends = arena_.group_ends, &group_of = arena_.group_of_hit;
-    ends.resize(misses + 1), group_of.resize(n), arena_.sorted.resize(n);
-    std::fill_n(ends.data(), ends.size(), 0);
-    for (size_t i = 0; i < n; ++i)
-      group_of[i] =
-          hits.object[i] == kNone ? uint32_t(misses) : groups_.of(scene_.geometry, hits.object[i], hits.part[i]);
-    // Neighbours are mostly of one group, whose number is kept at hand.
-    const auto for_each_place = [&](const auto& visit) {
-      size_t group = misses;
-      uint32_t end = ends[group];
-      for (size_t i = 0; i < n; ++i) {
-        if (group_of[i] != group) ends[group] = end, group = group_of[i], end = ends[group];
-        visit(i, end++);
-      }
-      ends[group] = end;
-    };
-    for_each_place([](size_t, uint32_t) {});
-    uint32_t sum = 0;
-    for (size_t group = 0; group <= misses; ++group) sum += std::exchange(ends[group], sum);
-    for_each_place([&](size_t i, uint32_t place) { arena_.sorted[place] = uint32_t(i); });
   }
 
   static constexpr size_t kLanes = kWidthOf<ShadingLanes>;
@@ -190,6 +163,7 @@ class Whitted {
     light.store(weight * environment_radiance(*scene_.environment, direction, load(paths.roughness)));
     for (size_t k = 0; k < rays.size(); ++k) sink_.radiance[paths.pixel[rays[k]]] += light.get(k);
   }
+
   /// Of a ray that leaves the scene; else it sees the environment.
   [[nodiscard]] bool sees_background(RayKind kind) const {
     if (!scene_.environment) return true;

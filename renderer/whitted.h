@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "renderer/camera_cell.h"
+#include "renderer/hits_by_group.h"
 #include "renderer/lane_shading.h"
 #include "renderer/path_wave.h"
 #include "renderer/phase_clock.h"
@@ -24,7 +25,7 @@ struct WaveArena {
   std::vector<ShadowWave> shadow_by_light;
   ShadowWave shadow;  // those of all lights, one after the other, when they are traced
   Lanes<Rgb> visible;
-  Lanes<uint32_t> group_of_hit, group_ends, sorted;  // the wave's hits by shading group
+  HitsByGroup hits_by_group;
   LaneWork lane_work;
   LaneLight lane_light;
   Lanes<float> time_of_pixel;              // of the shutter, of the samples at hand; of no elements where nothing moves
