@@ -113,48 +113,27 @@ void push_branches(const std::array<Branch, 3>& branches, std::span<const uint32
     for (const Branch& branch : branches)
       if (branch.lanes >> k & 1) to.paths.set_media(next++, media);
   }
+  const LaneMerger<kLanes, 3> merger({branches[0].lanes, branches[1].lanes, branches[2].lanes});
   const auto append = [&](auto& row, const auto& values_of) {
     using T = std::remove_cvref_t<decltype(row[0])>;
-    const auto chosen = [&](const Branch& branch) { return ChosenLanes<T, kLanes>{branch.lanes, &values_of(branch)}; };
-    append_in_turn(row, std::array{chosen(branches[0]), chosen(branches[1]), chosen(branches[2])});
+    merger.append<T>(row, {values_of(branches[0]), values_of(branches[1]), values_of(branches[2])});
   };
-  const auto append_same = [&](Lanes<float>& row, float value) {
-    std::array<float, kLanes> same;
-    same.fill(value);
-    append(
-        row, [&](const Branch&) -> const auto& { return same; });
-  };
-  append(
-      to.rays.origin.x, [](const Branch& b) -> const auto& { return b.rays.origin.x.values; });
-  append(
-      to.rays.origin.y, [](const Branch& b) -> const auto& { return b.rays.origin.y.values; });
-  append(
-      to.rays.origin.z, [](const Branch& b) -> const auto& { return b.rays.origin.z.values; });
-  append(
-      to.rays.direction.x, [](const Branch& b) -> const auto& { return b.rays.direction.x.values; });
-  append(
-      to.rays.direction.y, [](const Branch& b) -> const auto& { return b.rays.direction.y.values; });
-  append(
-      to.rays.direction.z, [](const Branch& b) -> const auto& { return b.rays.direction.z.values; });
-  append_same(to.rays.t_min, Rayf{}.t_min), append_same(to.rays.t_max, Rayf{}.t_max);
-  append(
-      to.paths.red, [](const Branch& b) -> const auto& { return b.rays.weight.r.values; });
-  append(
-      to.paths.green, [](const Branch& b) -> const auto& { return b.rays.weight.g.values; });
-  append(
-      to.paths.blue, [](const Branch& b) -> const auto& { return b.rays.weight.b.values; });
-  append(
-      to.paths.kind, [](const Branch& b) -> const auto& { return b.kind; });
-  append(
-      to.paths.cone_spread, [](const Branch& b) -> const auto& { return b.rays.cone_spread.values; });
-  append(
-      to.paths.cone_width, [&](const Branch&) -> const auto& { return work.cone_width.values; });
-  append(
-      to.paths.pixel, [&](const Branch&) -> const auto& { return work.pixel.values; });
-  append(
-      to.paths.depth, [](const Branch& b) -> const auto& { return b.depth.values; });
-  append(
-      to.paths.roughness, [](const Branch& b) -> const auto& { return b.roughness.values; });
+  append(to.rays.origin.x, [](const Branch& b) { return &b.rays.origin.x.values; });
+  append(to.rays.origin.y, [](const Branch& b) { return &b.rays.origin.y.values; });
+  append(to.rays.origin.z, [](const Branch& b) { return &b.rays.origin.z.values; });
+  append(to.rays.direction.x, [](const Branch& b) { return &b.rays.direction.x.values; });
+  append(to.rays.direction.y, [](const Branch& b) { return &b.rays.direction.y.values; });
+  append(to.rays.direction.z, [](const Branch& b) { return &b.rays.direction.z.values; });
+  merger.append_same(to.rays.t_min, Rayf{}.t_min), merger.append_same(to.rays.t_max, Rayf{}.t_max);
+  append(to.paths.red, [](const Branch& b) { return &b.rays.weight.r.values; });
+  append(to.paths.green, [](const Branch& b) { return &b.rays.weight.g.values; });
+  append(to.paths.blue, [](const Branch& b) { return &b.rays.weight.b.values; });
+  append(to.paths.kind, [](const Branch& b) { return &b.kind; });
+  append(to.paths.cone_spread, [](const Branch& b) { return &b.rays.cone_spread.values; });
+  append(to.paths.cone_width, [&](const Branch&) { return &work.cone_width.values; });
+  append(to.paths.pixel, [&](const Branch&) { return &work.pixel.values; });
+  append(to.paths.depth, [](const Branch& b) { return &b.depth.values; });
+  append(to.paths.roughness, [](const Branch& b) { return &b.roughness.values; });
 }
 
 }  // namespace

@@ -11,10 +11,14 @@ namespace {
 using U = UintOf<ShadingLanes>;
 constexpr size_t kLanes = kWidthOf<U>;
 
+constexpr size_t kShortRun = 4;  // for which lanes are not worth their latency
+
 /// Where the run that starts at `first` ends. Rows are readable up to a multiple of the lanes.
 size_t end_of_run(const HitWave& hits, size_t first) {
   const uint32_t object = hits.object[first], part = hits.part[first];
-  const size_t n = hits.object.size();
+  const size_t n = hits.object.size(), near = std::min(n, first + kShortRun);
+  for (; first < near; ++first)
+    if (hits.object[first] != object || (object != kNone && hits.part[first] != part)) return first;
   uint32_t before = (1u << first % kLanes) - 1;  // lanes of the first block that do not count
   for (size_t block = first - first % kLanes; block < n; block += kLanes) {
     const auto row = [&](const Lanes<uint32_t>& of) { return U(&of[block], std::experimental::element_aligned); };
