@@ -35,6 +35,12 @@ Crossing crossing_of(const ShapeGroup& group, uint32_t k, const Rayf& ray, const
   return {group.objects[k], hit.face, 0, 0, 0, object_point(group.members[k].placed.object_from_world, ray, hit.t)};
 }
 
+/// What a member lets pass wherever it is crossed.
+std::optional<Rgb> transmittance_of(const ShapeGroup& group, uint32_t k) {
+  const SurfaceFilter& filter = group.filter;
+  return filter.shape_transmittance ? filter.shape_transmittance(filter.data, group.objects[k]) : std::nullopt;
+}
+
 std::vector<ShapeHit>& hits_of(const ShapeGroup::Member& member, const Rayf& ray) {
   thread_local std::vector<ShapeHit> hits;
   hits.clear();
@@ -150,6 +156,35 @@ template <class S>
   if (found.blocked) embree::accept(m.args, i);
 }
 
+/// Takes its share of a ray's light; none may be left.
+void dim(const RTCOccludedFunctionNArguments* args, unsigned i, const Rgb& passing) {
+  Rgb& visible = embree::query_of<WaveQuery>(args).visible[RTCRayN_id(args->ray, args->N, i)];
+  visible *= passing;
+  if (!(max_component(visible) > 0)) embree::accept(args, i);
+}
+
+/// Through a surface that lets the same light pass everywhere, crossing by crossing.
+template <class S>
+[[gnu::flatten]] void pass_lanes(const Meeting<S, RTCOccludedFunctionNArguments>& m, const Rgb& passing, unsigned first,
+                                 uint32_t bits) {
+  const PacketLanes lanes(m.rays, first);
+  const Passed<DoubleLanes> found = passed(m.crossings_of(lanes.origin, lanes.direction), lanes.t_min, lanes.t_max);
+  const uint32_t doubtful = lane_bits(found.doubtful) & bits;
+  for (const auto& crossing : found.crossing)
+    for_each_bit(lane_bits(crossing) & bits & ~doubtful, [&](unsigned i) { dim(m.args, first + i, passing); });
+  for_each_bit(doubtful, [&](unsigned i) { occlude_lane(m.args, first + i); });
+}
+
+template <class S>
+[[gnu::flatten]] void pass_quickly(const Meeting<S, RTCOccludedFunctionNArguments>& m, const Rgb& passing, unsigned i) {
+  const Rayf ray = m.rays.ray(i);
+  const Passed<double> found =
+      passed(m.crossings_of(Vec3d(ray.origin), Vec3d(ray.direction)), double(ray.t_min), double(ray.t_max));
+  if (found.doubtful) return occlude_lane(m.args, i);
+  for (const bool crossing : found.crossing)
+    if (crossing) dim(m.args, i, passing);
+}
+
 template <class S>
 void occlude_group(const RTCOccludedFunctionNArguments* args) {
   const Meeting<S, RTCOccludedFunctionNArguments> m(args);
@@ -160,10 +195,16 @@ void occlude_group(const RTCOccludedFunctionNArguments* args) {
   if constexpr (std::is_same_v<S, Composite>) {
     for_each_bit(lanes, one_by_one);
   } else {
-    if (m.member.opacity != Opacity::opaque) return for_each_bit(lanes, one_by_one);  // what lets light through counts
+    if (m.member.opacity == Opacity::opaque)
+      return for_lanes(
+          lanes, args->N, [&](unsigned i) { occlude_quickly(m, i); },
+          [&](unsigned first, uint32_t bits) { occlude_lanes(m, first, bits); });
+    if (lanes == 0) return;
+    const std::optional<Rgb> passing = transmittance_of(m.group, args->primID);
+    if (!passing) return for_each_bit(lanes, one_by_one);
     for_lanes(
-        lanes, args->N, [&](unsigned i) { occlude_quickly(m, i); },
-        [&](unsigned first, uint32_t bits) { occlude_lanes(m, first, bits); });
+        lanes, args->N, [&](unsigned i) { pass_quickly(m, *passing, i); },
+        [&](unsigned first, uint32_t bits) { pass_lanes(m, *passing, first, bits); });
   }
 }
 

@@ -93,4 +93,22 @@ template <class T>
   return found;
 }
 
+/// The crossings in range, all of them, where that is certain.
+template <class T>
+struct Passed {
+  std::array<MaskOf<T>, 4> crossing;
+  MaskOf<T> doubtful;
+};
+template <class T>
+[[nodiscard]] Passed<T> passed(const LineCrossings<T>& crossings, const T& t_min, const T& t_max) {
+  Passed<T> found;
+  found.doubtful = crossings.doubtful;
+  for (size_t k = 0; k < found.crossing.size(); ++k) {
+    const auto& c = crossings.at[k];
+    found.crossing[k] = c.present && c.t - c.error > t_min && c.t + c.error < t_max;
+    found.doubtful = found.doubtful || (c.present && !found.crossing[k] && may_round_into(c.t, c.error, t_min, t_max));
+  }
+  return found;
+}
+
 }  // namespace alhazen

@@ -2,6 +2,7 @@
 // through.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "core/opacity.h"
@@ -22,6 +23,8 @@ struct SurfaceFilter {
   const void* data = nullptr;
   bool (*is_present)(const void* data, const Crossing&) noexcept = nullptr;    // false in a hole of a cutout
   Rgb (*transmittance)(const void* data, const Crossing&) noexcept = nullptr;  // share of light passing; 1 in a hole
+  // The same of a shape, by its object's number, where it is one for all of its points.
+  std::optional<Rgb> (*shape_transmittance)(const void* data, uint32_t object) noexcept = nullptr;
 };
 
 }  // namespace alhazen

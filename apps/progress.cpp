@@ -138,8 +138,9 @@ struct ProgressReporter::Impl {
       wake.wait_for(lock, stop, interval, [] { return false; });
       return !stop.stop_requested();
     };
-    while (wait()) report();
-    if (style == ProgressStyle::renewed) offer(STDERR_FILENO, kEraseLine);
+    bool has_reported = false;
+    for (; wait(); has_reported = true) report();
+    if (has_reported && style == ProgressStyle::renewed) offer(STDERR_FILENO, kEraseLine);
   }
 };
 

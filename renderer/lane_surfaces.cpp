@@ -324,10 +324,11 @@ F mean_curvature(const Scene& scene, const LaneHits& hits, const Attributes& has
     Vec3Array<F> ng;
     LaneArray<F> widths, curvature;
     p.store(points.p_world), ng.store(points.ng_world), widths.store(width);
-    for (size_t k = 0; k < kWidthOf<F>; ++k) {
-      SurfacePoint point;
-      point.p_world = p.get(k), point.ng_world = ng.get(k);
-      curvature[k] = shape_curvature(scene, hits.ids[k], point, widths[k], 0);
+    for (size_t k = 0; k < kWidthOf<F>;) {
+      const uint32_t object = hits.ids[k].object;
+      const ShapeCurvature on_shape(scene, object, 0);
+      for (; k < kWidthOf<F> && hits.ids[k].object == object; ++k)
+        curvature[k] = on_shape.at(int(hits.ids[k].part), p.get(k), ng.get(k), widths[k]);
     }
     return finite_or_0(curvature.load());
   }

@@ -35,6 +35,13 @@ Rgb light_passing(const void* data, const Crossing& crossing) noexcept {
   return straight_transmittance(scene.materials[s.material], texture_table(scene), s.inputs());
 }
 
+std::optional<Rgb> light_passing_shape(const void* data, uint32_t object) noexcept {
+  const Scene& scene = *static_cast<const Scene*>(data);
+  const Material& material = scene.materials[shape_instance(scene.geometry, object).material];
+  if (has_passing_textures(material)) return {};
+  return straight_transmittance(material, texture_table(scene), {});
+}
+
 template <class U>
 U seed_of(const U& x, const U& y) {
   return mix_bits<U>(x + mix_bits<U>(y));
@@ -287,7 +294,7 @@ ColorImage blank_picture(int width, int height, std::vector<float> memory) {
 SurfaceFilter surface_filter(const Scene& scene, std::vector<Opacity>& opacities) {
   opacities.clear();
   for (const Material& material : scene.materials) opacities.push_back(opacity(material));
-  return {opacities, &scene, is_present, light_passing};
+  return {opacities, &scene, is_present, light_passing, light_passing_shape};
 }
 
 RenderResult render(const Scene& scene, const AcceleratedScene& accelerated, const Camera& camera,

@@ -33,25 +33,30 @@ SurfacePoint shape_point(const Scene& scene, uint32_t object, int face, const Af
   return s;
 }
 
+bool is_flat(const Shape& shape) {
+  return std::holds_alternative<Box>(shape) || std::holds_alternative<Disk>(shape) ||
+         std::holds_alternative<Polygon>(shape);
+}
+
 /// A shape's surface about a point of it.
 class ShapeSurroundings {
  public:
-  /// Steps of about `width` metres to two sides.
-  ShapeSurroundings(const Scene& scene, const HitIds& ids, const SurfacePoint& point, double width, float time)
-      : world_from_object_(world_from_object(scene.geometry, ids.object, time)),
-        object_from_world_(inverse(world_from_object_)),
-        shape_(scene.geometry.shapes[shape_instance(scene.geometry, ids.object).shape]),
-        face_(int(ids.part)),
-        p_world_(point.p_world),
-        ng_world_(point.ng_world),
-        step_(std::max(width, 1e-6 * max_component(abs(point.p_world)))) {  // well above the rounding of double
-    const ShadingFrame frame = frame_about(point.ng_world);
+  /// Steps of about `width` metres to two sides of a point on that face.
+  ShapeSurroundings(const Affine3d& world_from_object, const Shape& shape, int face, const Vec3d& p_world,
+                    const Vec3f& ng_world, double width)
+      : world_from_object_(world_from_object),
+        object_from_world_(inverse(world_from_object)),
+        shape_(shape),
+        face_(face),
+        p_world_(p_world),
+        ng_world_(ng_world),
+        step_(std::max(width, 1e-6 * max_component(abs(p_world)))) {  // well above the rounding of double
+    const ShadingFrame frame = frame_about(ng_world);
     sides_ = {Vec3d(frame.t), Vec3d(frame.b)};
   }
 
   /// From how far the normal leans outward at the steps, put back on the surface.
   [[nodiscard]] double mean_curvature() const {
-    if (is_flat()) return 0;
     const Vec3d n(ng_world_);
     double turns = 0;
     for (const Vec3d& side : sides_) turns += dot(normal_near(p_world_ + side * step_) - n, side) / step_;
@@ -71,14 +76,6 @@ class ShapeSurroundings {
   }
 
  private:
-  [[nodiscard]] bool is_flat() const {
-    return std::visit(
-        []<class S>(const S&) {
-          return std::is_same_v<S, Box> || std::is_same_v<S, Disk> || std::is_same_v<S, Polygon>;
-        },
-        shape_);
-  }
-
   /// f(shape, point of its surface near p_world, face).
   template <class F>
   [[nodiscard]] auto near(const Vec3d& p_world, const F& f) const {
@@ -123,18 +120,27 @@ SurfacePoint shape_point(const Scene& scene, const Rayf& ray_world, const HitIds
   return s;
 }
 
-float shape_curvature(const Scene& scene, const HitIds& ids, const SurfacePoint& point, float width, float time) {
-  if (const auto* sphere =
-          std::get_if<Sphere>(&scene.geometry.shapes[shape_instance(scene.geometry, ids.object).shape]))
-    if (const double scale = similarity_scale(world_from_object(scene.geometry, ids.object, time)); scale > 0)
-      return float(1 /
-                   std::max(sphere->radius * scale, double(width)));  // over more than the ball: as if it were as large
-  return float(ShapeSurroundings(scene, ids, point, double(width), time).mean_curvature());
+ShapeCurvature::ShapeCurvature(const Scene& scene, uint32_t object, float time)
+    : world_from_object_(world_from_object(scene.geometry, object, time)),
+      shape_(scene.geometry.shapes[shape_instance(scene.geometry, object).shape]),
+      is_flat_(is_flat(shape_)) {
+  const auto* sphere = std::get_if<Sphere>(&shape_);
+  radius_ = sphere ? sphere->radius * similarity_scale(world_from_object_) : 0;
+}
+
+float ShapeCurvature::at(int face, const Vec3d& p_world, const Vec3f& ng_world, float width) const {
+  if (is_flat_) return 0;
+  if (radius_ > 0)
+    return float(1 / std::max(radius_, double(width)));  // over more than the ball: as if it were as large
+  return float(ShapeSurroundings(world_from_object_, shape_, face, p_world, ng_world, double(width)).mean_curvature());
 }
 
 void measure_shape_uvs(const Scene& scene, const HitIds& ids, float width, float time, SurfacePoint& point) noexcept {
   if (!is_shape(scene.geometry, ids.object)) return;
-  const float density = ShapeSurroundings(scene, ids, point, double(width), time).uv_per_metre();
+  const Shape& shape = scene.geometry.shapes[shape_instance(scene.geometry, ids.object).shape];
+  const float density = ShapeSurroundings(world_from_object(scene.geometry, ids.object, time), shape, int(ids.part),
+                                          point.p_world, point.ng_world, double(width))
+                            .uv_per_metre();
   point.uv_per_metre[0] = std::isfinite(density) ? density : 0;
 }
 

@@ -9,9 +9,20 @@ namespace alhazen {
 [[nodiscard]] SurfacePoint shape_point(const Scene& scene, const Rayf& ray_world, const HitIds& ids, float t,
                                        float time, bool has_textures);
 
-/// `mean_curvature` of a point on a shape, which may be infinite or no number.
-[[nodiscard]] float shape_curvature(const Scene& scene, const HitIds& ids, const SurfacePoint& point, float width,
-                                    float time);
+/// `mean_curvature` on one shape, hit after hit.
+class ShapeCurvature {
+ public:
+  ShapeCurvature(const Scene& scene, uint32_t object, float time);
+
+  /// Over `width` metres about a point on that face; may be infinite or no number.
+  [[nodiscard]] float at(int face, const Vec3d& p_world, const Vec3f& ng_world, float width) const;
+
+ private:
+  Affine3d world_from_object_;
+  const Shape& shape_;
+  bool is_flat_;
+  double radius_;  // in the world, of a sphere that is one there; else 0
+};
 
 /// Of a shape's tangent frame, whose v runs down.
 [[nodiscard]] inline float bitangent_sign(const Affine3d& m) { return determinant(m) < 0 ? 1.0f : -1.0f; }

@@ -76,7 +76,8 @@ SurfacePoint surface_point(const Scene& scene, const Rayf& ray_world, const HitI
 float mean_curvature(const Scene& scene, const HitIds& ids, const SurfacePoint& point, float width,
                      float time) noexcept {
   const Geometry& geometry = scene.geometry;
-  if (is_shape(geometry, ids.object)) return finite_or_0(shape_curvature(scene, ids, point, width, time));
+  if (is_shape(geometry, ids.object))
+    return finite_or_0(ShapeCurvature(scene, ids.object, time).at(int(ids.part), point.p_world, point.ng_world, width));
   const uint32_t mesh = geometry.mesh_instances.mesh_of(ids.object);
   const TriangleMesh& part = geometry.meshes[mesh].parts[ids.part];
   if (part.normals.empty()) return 0;
