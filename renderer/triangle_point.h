@@ -1,4 +1,5 @@
-// A point on a triangle from its corners, written once for a float and for lanes of floats.
+// A point on a triangle from its corners, written once for a float and for lanes of floats. What is called once is
+// inlined by order: lanes of doubles go through memory in calls.
 #pragma once
 
 #include <array>
@@ -44,7 +45,8 @@ Vec3<D> outer_normal(const Affine3<D>& m, const D& stretch, const Vec3<D>& n) {
 /// plane's distance from a ray that starts up to the longest edge away from a vertex: wrong by this over twice the
 /// area. For needles that is many roundings; for a triangle of no area, more than its size would hide nothing any more.
 template <class F>
-DoubleOf<F> plane_error(const std::array<Vec3<F>, 3>& corner, const DoubleOf<F>& twice_area) {
+[[gnu::always_inline]] inline DoubleOf<F> plane_error(const std::array<Vec3<F>, 3>& corner,
+                                                      const DoubleOf<F>& twice_area) {
   using D = DoubleOf<F>;
   const F ab = length(corner[1] - corner[0]), bc = length(corner[2] - corner[1]), ca = length(corner[0] - corner[2]);
   const F low = smaller(ab, bc), high = larger(ab, bc);
@@ -55,8 +57,9 @@ DoubleOf<F> plane_error(const std::array<Vec3<F>, 3>& corner, const DoubleOf<F>&
 /// Position, normals and their errors. `m`: to the world, or null for a part that lies there, to the same bits as with
 /// the identity; `roundings`: of the position, in units of kUlp.
 template <class F>
-void place(const Corners<F>& corners, const Attributes& has, const F& u, const F& v, const Affine3<DoubleOf<F>>* m,
-           const DoubleOf<F>& roundings, BasicSurfacePoint<F>& s) {
+[[gnu::always_inline]] inline void place(const Corners<F>& corners, const Attributes& has, const F& u, const F& v,
+                                         const Affine3<DoubleOf<F>>* m, const DoubleOf<F>& roundings,
+                                         BasicSurfacePoint<F>& s) {
   using D = DoubleOf<F>;
   const auto vertex = [&](size_t k) { return convert<D>(corners.p_object[k]); };
   const Vec3<D> origin = vertex(0), e1 = vertex(1) - origin, e2 = vertex(2) - origin;
@@ -92,16 +95,16 @@ void place(const Corners<F>& corners, const Attributes& has, const F& u, const F
 /// Texture coordinates and colour, and how fast the coordinates go over the triangle: the root of the ratio of the
 /// areas.
 template <class F>
-void interpolate_attributes(const Corners<F>& corners, const Attributes& has, const F& u, const F& v,
-                            BasicSurfacePoint<F>& s) {
+[[gnu::always_inline]] inline void interpolate_attributes(const Corners<F>& corners, const Attributes& has, const F& u,
+                                                          const F& v, BasicSurfacePoint<F>& s) {
   s.uv_count = int(has.uv_sets);
   for (size_t k = 0; k < has.uv_sets; ++k) s.uvs[k] = interpolated(loaded(corners.uvs[k]), u, v);
   if (!has.colors) return;
   s.color = {interpolated(loaded(corners.colors), u, v), interpolated(loaded(corners.alphas), u, v)};
 }
 template <class F>
-void measure_uvs(const Corners<F>& corners, const Attributes& has, const Affine3<DoubleOf<F>>* m,
-                 BasicSurfacePoint<F>& s) {
+[[gnu::always_inline]] inline void measure_uvs(const Corners<F>& corners, const Attributes& has,
+                                               const Affine3<DoubleOf<F>>* m, BasicSurfacePoint<F>& s) {
   using D = DoubleOf<F>;
   const auto vertex = [&](size_t k) {
     const Vec3<D> p = convert<D>(corners.p_object[k]);
