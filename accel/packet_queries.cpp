@@ -162,6 +162,7 @@ struct Intersector {
   /// What was hit, as the scene numbers it.
   template <int width>
   [[gnu::flatten]] void store_ids(const typename embree::Packets<width>::RayHit& packet, size_t first) const {
+    using F = FloatLanes<width>;
     using U = LanesOf<uint32_t, width>;
     constexpr auto anywhere = std::experimental::element_aligned;
     const auto entry_of = [](const std::vector<uint32_t>& table, const U& number) {
@@ -179,7 +180,7 @@ struct Intersector {
     if (!any_of(on_shape)) return store_lanes(select(hit, object, none), part, primitive, first);
     // A shape's face, which takes the place of the part, is in its u.
     const U shape = select(on_shape, entry_of(built.top.first_shape, known) + primitive, U(0)),
-            face = convert<U>(convert<IntOf<U>>(FloatLanes<width>(packet.hit.u, anywhere)));
+            face = convert<U>(convert<IntOf<U>>(select(convert_mask<F>(on_shape), F(packet.hit.u, anywhere), F(0))));
     store_lanes(select(on_shape, entry_of(built.top.object_of_shape, shape), select(hit, object, none)),
                 select(on_shape, face, part), select(on_shape, U(0), primitive), first);
   }
