@@ -1,10 +1,12 @@
 // Claims about hits shaded side by side: pictures have the bits that they have when every hit is shaded alone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "accel/accelerated_scene.h"
 #include "materials/mipmap.h"
+#include "renderer/hits_by_group.h"
 #include "renderer/render.h"
 #include "renderer/trace_observer.h"
 #include "tests/uniform.h"
@@ -132,6 +134,36 @@ TEST(BlockShading, PicturesHaveTheBitsOfHitsShadedAlone) {
       x = alone.x0 + alone.color.width;
       if (x >= options.width) x = 0, y = alone.y0 + alone.color.height;
     }
+  }
+}
+
+/// Runs of neighbours on one part or on nothing, from one hit to more than lanes hold.
+TEST(HitsByGroup, KeepTheirOrderInEachGroup) {
+  Uniform uniform(32);
+  const Scene scene = random_scene(uniform);
+  const ShadingGroups groups(scene);
+  const size_t objects = scene.geometry.mesh_instances.size() + scene.geometry.shape_instances.size();
+  HitsByGroup sorted;
+  for (int i = 0; i < 300; ++i) {
+    HitWave hits;
+    hits.resize(uniform.bits() % 400);
+    for (size_t k = 0; k < hits.object.size();) {
+      const uint32_t object = uniform.bits() % 4 ? uint32_t(uniform.bits() % objects) : kNone;
+      const size_t end = std::min(hits.object.size(), k + 1 + uniform.bits() % (i % 2 ? 3 : 70));
+      for (; k < end; ++k) hits.object[k] = object, hits.part[k] = object == kNone ? uniform.bits() : 0;
+    }
+    sort_by_group(hits, scene.geometry, groups, sorted);
+    ASSERT_EQ(sorted.sorted.size(), hits.object.size());
+    size_t place = 0;
+    for (size_t group = 0; group <= groups.size(); ++group) {
+      const size_t first = place;
+      for (; place < sorted.ends[group]; ++place) {
+        const uint32_t k = sorted.sorted[place];
+        EXPECT_TRUE(place == first || sorted.sorted[place - 1] < k);
+        EXPECT_EQ(group, hits.object[k] == kNone ? groups.size() : groups.of(scene.geometry, hits.object[k], 0));
+      }
+    }
+    EXPECT_EQ(place, hits.object.size());
   }
 }
 
