@@ -1,4 +1,4 @@
-// Embree 3.13 and Embree 4 under one set of names. Included by accelerated_scene.cpp and, for the baselines, by the
+// Embree 3.13 and Embree 4 under one set of names. Included by sources of accel/ and, for the baselines, by the
 // benches; nothing else depends on which of the two was found.
 //
 // What differs and is settled here: the include folder, where a query's flags and callback data go, the order of a
