@@ -12,6 +12,7 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <cstring>
 #include <limits>
 
 #include "accel/wave.h"
@@ -46,6 +47,8 @@ template <class DerivedQuery, class CallbackArguments>
 [[nodiscard]] const DerivedQuery& query_of(const CallbackArguments* arguments) {
   return *static_cast<const DerivedQuery*>(reinterpret_cast<const Query*>(arguments->context));
 }
+
+inline constexpr unsigned kEveryRay = ~0u;  // mask of all our rays and geometries
 
 /// The types and calls of the packets of one width.
 template <int width>
@@ -102,6 +105,19 @@ struct Packets<16> {
   return rays == Coherence::coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
 }
 #endif
+
+/// Rays of the wave from `first` on into a packet of that width. A ray's id is its number in the wave.
+template <class Packet>
+void load_rays(const RayWave& wave, size_t first, int width, Packet& ray) {
+  const size_t bytes = size_t(width) * sizeof(float);
+  std::memcpy(ray.org_x, &wave.origin.x[first], bytes), std::memcpy(ray.org_y, &wave.origin.y[first], bytes);
+  std::memcpy(ray.org_z, &wave.origin.z[first], bytes), std::memcpy(ray.dir_x, &wave.direction.x[first], bytes);
+  std::memcpy(ray.dir_y, &wave.direction.y[first], bytes), std::memcpy(ray.dir_z, &wave.direction.z[first], bytes);
+  std::memcpy(ray.tnear, &wave.t_min[first], bytes), std::memcpy(ray.tfar, &wave.t_max[first], bytes);
+  for (int i = 0; i < width; ++i)
+    ray.time[i] = 0, ray.mask[i] = kEveryRay, ray.flags[i] = 0, ray.id[i] = unsigned(first) + unsigned(i);
+  if (wave.time.size() > 0) std::memcpy(ray.time, &wave.time[first], bytes);
+}
 
 /// The closest hits of the lanes whose `valid` is -1. `valid` and `packet` are aligned to the packet's size.
 template <int width>
@@ -167,8 +183,6 @@ inline void accept(const RTCOccludedFunctionNArguments* arguments, unsigned lane
 }
 
 // ---- Devices and geometries ----
-
-inline constexpr unsigned kEveryRay = ~0u;  // mask of all our rays and geometries
 
 /// What each coordinate of a ray's origin and direction must stay below, in every space that it is traversed in: one
 /// beyond ends the program where Embree's assertions are on.

@@ -45,18 +45,6 @@ Crossing crossing_of(const RTCFilterFunctionNArguments* args, const BuiltScene& 
   return {instance & kInGroup ? instance & ~kInGroup : built.top.object[instance], geometry, primitive, u, v, {}};
 }
 
-template <class Packet>
-void load_rays(const RayWave& wave, size_t first, int width, Packet& ray) {
-  const size_t bytes = size_t(width) * sizeof(float);
-  std::memcpy(ray.org_x, &wave.origin.x[first], bytes), std::memcpy(ray.org_y, &wave.origin.y[first], bytes);
-  std::memcpy(ray.org_z, &wave.origin.z[first], bytes), std::memcpy(ray.dir_x, &wave.direction.x[first], bytes);
-  std::memcpy(ray.dir_y, &wave.direction.y[first], bytes), std::memcpy(ray.dir_z, &wave.direction.z[first], bytes);
-  std::memcpy(ray.tnear, &wave.t_min[first], bytes), std::memcpy(ray.tfar, &wave.t_max[first], bytes);
-  for (int i = 0; i < width; ++i)
-    ray.time[i] = 0, ray.mask[i] = embree::kEveryRay, ray.flags[i] = 0, ray.id[i] = unsigned(first) + unsigned(i);
-  if (wave.time.size() > 0) std::memcpy(ray.time, &wave.time[first], bytes);
-}
-
 template <class RayHit>
 void forget_hits(int width, RayHit& packet) {
   for (int i = 0; i < width; ++i) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
@@ -149,7 +137,7 @@ struct Intersector {
   void trace(SceneQuery& query, size_t first, int, const int* valid) const {
     alignas(64) typename embree::Packets<width>::RayHit packet;
     forget_hits(width, packet);
-    load_rays(wave, first, width, packet.ray);
+    embree::load_rays(wave, first, width, packet.ray);
     for (RTCScene scene : built.scenes)
       if (scene) embree::intersect<width>(valid, scene, query, packet);
     constexpr size_t kBytes = size_t(width) * sizeof(float);
@@ -201,7 +189,7 @@ struct Occluder {
   template <int width>
   void trace(SceneQuery& query, size_t first, int rays, const int* valid) const {
     alignas(64) typename embree::Packets<width>::Ray packet;
-    load_rays(wave, first, width, packet);
+    embree::load_rays(wave, first, width, packet);
     for (RTCScene scene : built.scenes)  // what is blocked in the first is not looked at in the second
       if (scene) embree::occluded<width>(valid, scene, query, packet);
     for (int i = 0; i < rays; ++i)
@@ -231,7 +219,7 @@ double seconds_by(const BuiltScene& built, const BareCall& call, const RayWave& 
     packet.joined = call.coherence == Coherence::coherent &&
                     (joining == Joining::any || are_of_one_octant<width>(wave, first, lanes));
     forget_hits(width, packet.rays);
-    load_rays(wave, first, width, packet.rays.ray);
+    embree::load_rays(wave, first, width, packet.rays.ray);
   }
   SceneQuery apart(built, Coherence::incoherent, visible.data()), together(built, Coherence::coherent, visible.data());
   const auto intersect = [&](Packet& packet) {

@@ -73,7 +73,7 @@ void occlude_lane(const RTCOccludedFunctionNArguments* args, unsigned i) {
   }
 }
 
-/// The lanes of a packet whose rays may meet the member that is asked for.
+/// The lanes of a packet whose rays may meet the member that is asked for. The query counts what it was asked with.
 template <class Arguments>
 uint32_t lanes_to_ask(const Arguments* args, const ShapeGroup& group, const RayRows& rays) {
   if (args->N > 1) {

@@ -43,16 +43,6 @@ void attach_spheres(RTCDevice device, RTCScene scene, const Geometry& geometry) 
   attach(scene, g);
 }
 
-template <class Ray>
-void load(const RayWave& wave, size_t first, int width, Ray& ray) {
-  const size_t bytes = size_t(width) * sizeof(float);
-  std::memcpy(ray.org_x, &wave.origin.x[first], bytes), std::memcpy(ray.org_y, &wave.origin.y[first], bytes);
-  std::memcpy(ray.org_z, &wave.origin.z[first], bytes), std::memcpy(ray.dir_x, &wave.direction.x[first], bytes);
-  std::memcpy(ray.dir_y, &wave.direction.y[first], bytes), std::memcpy(ray.dir_z, &wave.direction.z[first], bytes);
-  std::memcpy(ray.tnear, &wave.t_min[first], bytes), std::memcpy(ray.tfar, &wave.t_max[first], bytes);
-  for (int i = 0; i < width; ++i) ray.time[i] = 0, ray.mask[i] = embree::kEveryRay, ray.flags[i] = 0;
-}
-
 template <int width>
 size_t count_hits(RTCScene scene, const RayWave& wave, Coherence coherence) {
   embree::Query query(coherence);
@@ -64,7 +54,7 @@ size_t count_hits(RTCScene scene, const RayWave& wave, Coherence coherence) {
       valid[i] = first + size_t(i) < wave.size() ? -1 : 0;
       packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     }
-    load(wave, first, width, packet.ray);
+    embree::load_rays(wave, first, width, packet.ray);
     embree::intersect<width>(valid, scene, query, packet);
     for (int i = 0; i < width; ++i) count += packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
   }
@@ -79,7 +69,7 @@ size_t count_blocked(RTCScene scene, const RayWave& wave, Coherence coherence) {
     alignas(64) typename embree::Packets<width>::Ray packet;
     alignas(64) int valid[width];
     for (int i = 0; i < width; ++i) valid[i] = first + size_t(i) < wave.size() ? -1 : 0;
-    load(wave, first, width, packet);
+    embree::load_rays(wave, first, width, packet);
     embree::occluded<width>(valid, scene, query, packet);
     for (int i = 0; i < width; ++i) count += valid[i] && packet.tfar[i] < 0;
   }

@@ -224,12 +224,6 @@ Vec3<D> object_points(const LaneHits& hits, const Affine3<D>& object_from_world,
   return transform_vector(object_from_world, convert<D>(hits.origin.load()) - origin_world + along);
 }
 
-/// The intersectors work in double on the float ray, so only the rounding of the origin has to be cleared.
-F shape_offset(const Vec3<D>& p_world) {
-  const D largest = larger(absolute(p_world.x), larger(absolute(p_world.y), absolute(p_world.z)));
-  return convert<F>(D(D(2 * kUlp) * largest));
-}
-
 /// What `shape_point` does, for shapes of one kind, but for texture coordinates. Answers the lanes that are left.
 template <class LaneShapes, class ShapeOf>
 uint32_t set_points_on(const LaneHits& hits, const Affine3<D>& m, const ShapeOf& shape_of, BasicSurfacePoint<F>& s) {
@@ -237,7 +231,7 @@ uint32_t set_points_on(const LaneHits& hits, const Affine3<D>& m, const ShapeOf&
   const Vec3<D> p = shapes.projected(object_points(hits, inverse(m), m.origin));
   s.p_world = transform_point(m, p);
   s.ng_world = s.ns_world = convert<F>(normalize(outer_normal(m, determinant(m), shapes.normal(p))));
-  s.offset = shape_offset(s.p_world);
+  s.offset = shape_offset<F>(s.p_world);
   return shapes.doubtful(hits);
 }
 
@@ -248,7 +242,7 @@ void set_points_on(const Polygon& polygon, const Affine3d& m, const LaneHits& hi
   const Vec3<D> p = nearest_in_plane(polygon, object_points(hits, broadcast(inverse(m)), all.origin));
   s.p_world = transform_point(all, p);
   s.ng_world = s.ns_world = broadcast<F>(Vec3f(ng));
-  s.offset = shape_offset(s.p_world);
+  s.offset = shape_offset<F>(s.p_world);
   s.tangent_world = broadcast<F>(Vec3f(normalize(transform_vector(m, u_tangent(polygon, center, 0)))));
   s.bitangent_sign = F(bitangent_sign(m));
   const Vec2<D> uv = uv_in_plane(polygon, p);

@@ -5,7 +5,6 @@
 
 #include "accel/posed.h"
 #include "materials/microfacet.h"
-#include "renderer/triangle_point.h"
 
 namespace alhazen {
 namespace {
@@ -28,8 +27,7 @@ SurfacePoint shape_point(const Scene& scene, uint32_t object, int face, const Af
       },
       scene.geometry.shapes[placed.shape]);
   s.uv_count = 1;
-  // The intersectors work in double on the float ray, so only the rounding of the origin has to be cleared.
-  s.offset = float(2 * kUlp * max_component(abs(s.p_world)));
+  s.offset = shape_offset<float>(s.p_world);
   return s;
 }
 

@@ -1,7 +1,7 @@
 // Points on analytic shapes, and how the surface runs about them.
 #pragma once
 
-#include "renderer/surface.h"
+#include "renderer/triangle_point.h"
 
 namespace alhazen {
 
@@ -23,6 +23,15 @@ class ShapeCurvature {
   bool is_flat_;
   double radius_;  // in the world, of a sphere that is one there; else 0
 };
+
+/// SurfacePoint::offset on a shape: the intersectors work in double on the float ray, so only the rounding of the
+/// origin has to be cleared.
+template <class F>
+[[nodiscard]] F shape_offset(const Vec3<DoubleOf<F>>& p_world) {
+  using D = DoubleOf<F>;
+  const D largest = larger(absolute(p_world.x), larger(absolute(p_world.y), absolute(p_world.z)));
+  return convert<F>(D(D(2 * kUlp) * largest));
+}
 
 /// Of a shape's tangent frame, whose v runs down.
 [[nodiscard]] inline float bitangent_sign(const Affine3d& m) { return determinant(m) < 0 ? 1.0f : -1.0f; }
