@@ -21,7 +21,7 @@ constexpr float kLeastCosine = 0.9f;
 
 /// Packets that call shapes for fewer lanes than this, on average, are slower than rays one by one. What the first
 /// calls of a wave say holds for the rest of it.
-constexpr uint64_t kFewestLanes = 2, kTellingCalls = 32;
+constexpr uint64_t kLeastLanesPerCall = 2, kTellingCalls = 32;
 
 struct SceneQuery : WaveQuery {
   const BuiltScene& built;
@@ -31,7 +31,7 @@ struct SceneQuery : WaveQuery {
 
   /// Whether its packets' rays meet different shapes.
   [[nodiscard]] bool meets_few_lanes() const {
-    return shape_calls >= kTellingCalls && shape_lanes < kFewestLanes * shape_calls;
+    return shape_calls >= kTellingCalls && shape_lanes < kLeastLanesPerCall * shape_calls;
   }
 };
 

@@ -78,9 +78,9 @@ template <class Arguments>
 uint32_t lanes_to_ask(const Arguments* args, const ShapeGroup& group, const RayRows& rays) {
   if (args->N > 1) {
     const WaveQuery& query = embree::query_of<WaveQuery>(args);
-    ++query.shape_calls,
-        query.shape_lanes +=
-        with_width(args->N, [&](auto width) { return uint64_t(std::popcount(active_lanes<width>(args->valid))); });
+    const uint32_t active = with_width(args->N, [&](auto width) { return active_lanes<width>(args->valid); });
+    ++query.shape_calls;
+    query.shape_lanes += uint64_t(std::popcount(active));
   }
   return lanes_that_may_meet(group.balls[args->primID], rays, args->valid);
 }
