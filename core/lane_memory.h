@@ -1,4 +1,4 @@
-// Loads where each lane has an address of its own.
+// Loads and stores where each lane has an address of its own.
 #pragma once
 
 #include <cstdint>
@@ -103,6 +103,40 @@ template <class N>
   }
 #endif
   return {load_at<N>(addresses), load_at<N>(addresses + AddressOf<N>(4)), load_at<N>(addresses + AddressOf<N>(8))};
+}
+
+/// Three numbers of 32 bits to each of the first `count` lanes' addresses on, by a transposition and a store for each.
+template <class N>
+void store_triples_at(const AddressOf<N>& addresses, const std::array<N, 3>& triples, size_t count) {
+  LaneArray<AddressOf<N>> at;
+  at.store(addresses);
+#if defined __AVX512F__ && defined __AVX512VL__ && defined __GLIBCXX__
+  if constexpr (kWidthOf<N> == 16) {
+    if (count == 16) {
+      const auto store_four = [&](size_t first, __m512i numbers) {
+        const auto store = [&](size_t k, __m128i triple) {
+          _mm_mask_storeu_epi32(reinterpret_cast<void*>(uintptr_t(at[k])), 0b111, triple);
+        };
+        store(first, _mm512_castsi512_si128(numbers)), store(first + 4, _mm512_extracti32x4_epi32(numbers, 1));
+        store(first + 8, _mm512_extracti32x4_epi32(numbers, 2)),
+            store(first + 12, _mm512_extracti32x4_epi32(numbers, 3));
+      };
+      const auto x = std::bit_cast<__m512i>(triples[0]), y = std::bit_cast<__m512i>(triples[1]),
+                 z = std::bit_cast<__m512i>(triples[2]);
+      const __m512i xy_low = _mm512_unpacklo_epi32(x, y), xy_high = _mm512_unpackhi_epi32(x, y),
+                    z_low = _mm512_unpacklo_epi32(z, z), z_high = _mm512_unpackhi_epi32(z, z);
+      store_four(0, _mm512_unpacklo_epi64(xy_low, z_low)), store_four(1, _mm512_unpackhi_epi64(xy_low, z_low));
+      store_four(2, _mm512_unpacklo_epi64(xy_high, z_high)), store_four(3, _mm512_unpackhi_epi64(xy_high, z_high));
+      return;
+    }
+  }
+#endif
+  std::array<LaneArray<N>, 3> numbers;
+  for (size_t i = 0; i < 3; ++i) numbers[i].store(triples[i]);
+  for (size_t k = 0; k < count; ++k) {
+    const std::array<ScalarOf<N>, 3> triple{numbers[0][k], numbers[1][k], numbers[2][k]};
+    std::memcpy(reinterpret_cast<void*>(uintptr_t(at[k])), triple.data(), sizeof triple);
+  }
 }
 
 /// table[index] in each lane.

@@ -10,6 +10,7 @@
 
 #include "accel/shape_hits.h"
 #include "core/fork_join.h"
+#include "core/lane_memory.h"
 #include "core/sampling.h"
 #include "renderer/camera_cell.h"
 #include "renderer/camera_ray.h"
@@ -186,8 +187,6 @@ struct CellWorker {
   }
 
   void signature(const Cell& cell, WaveArena& arena) const {
-    arena.clock.enter(Phase::film);
-    clear(cell);
     arena.clock.enter(Phase::generation);
     generate_camera_rays(camera, options, cell, 0, arena);
     const RayWave& rays = arena.pending.rays;
@@ -195,16 +194,29 @@ struct CellWorker {
     arena.clock.enter(Phase::traversal);
     accelerated.intersect(rays, Coherence::coherent, arena.hits);
     arena.clock.enter(Phase::film);
-    SurfaceIdReader ids_of(scene);
-    const size_t row = size_t(result.ids.width) * result.ids.channels.size();
-    uint32_t* const corner = result.ids.at(cell.x0 - x0, cell.y0 - y0);
-    for (size_t i = 0; i < rays.size(); ++i) {
-      if (arena.hits.object[i] == kNone) continue;
-      const SurfaceIds ids = ids_of({arena.hits.object[i], arena.hits.part[i], arena.hits.primitive[i]});
-      uint32_t* out = corner + size_t(arena.pixels.y[i]) * row + size_t(arena.pixels.x[i]) * 3;
-      out[0] = ids.node, out[1] = ids.primitive, out[2] = ids.material;
-    }
+    write_ids(cell, arena);
     control.camera_rays += rays.size();
+  }
+
+  /// What the cell's rays have hit, at their pixels: put together close by, for the picture's memory is far and likes
+  /// to be written in order.
+  void write_ids(const Cell& cell, const WaveArena& arena) const {
+    using U = UintOf<ShadingLanes>;
+    using I = IntOf<ShadingLanes>;
+    constexpr auto anywhere = std::experimental::element_aligned;
+    std::array<uint32_t, size_t(kCellSize) * kCellSize * 3> ids;
+    SurfaceIdReader ids_of(scene);
+    for (size_t first = 0; first < arena.pixels.size(); first += kWidthOf<U>) {
+      const I x(&arena.pixels.x[first], anywhere), y(&arena.pixels.y[first], anywhere);
+      const U object(&arena.hits.object[first], anywhere), part(&arena.hits.part[first], anywhere),
+          primitive(&arena.hits.primitive[first], anywhere);
+      const size_t count = std::min(kWidthOf<U>, arena.pixels.size() - first);
+      store_triples_at(address_of<I>(ids.data(), (y * I(kCellSize) + x) * I(3)), ids_of(object, part, primitive, count),
+                       count);
+    }
+    for (int y = cell.y0; y < cell.y1; ++y)
+      std::copy_n(&ids[size_t(y - cell.y0) * kCellSize * 3], (cell.x1 - cell.x0) * 3,
+                  result.ids.at(cell.x0 - x0, y - y0));
   }
 
   [[nodiscard]] bool whitted_with_layers(const Cell& cell, WaveArena& arena) const {

@@ -49,24 +49,6 @@ SurfacePoint mesh_point(const Scene& scene, const HitIds& ids, float u, float v,
 
 }  // namespace
 
-void SurfaceIdReader::look_up(const HitIds& hit) noexcept {
-  const Geometry& geometry = scene_.geometry;
-  // The default material is the last one, and none of the file's.
-  const auto of_file = [&](uint32_t material) { return material + 1 == scene_.materials.size() ? kNone : material; };
-  object_ = hit.object, part_ = hit.part;
-  node_ = node_of(geometry, hit.object);
-  first_primitive_ = 0, polygon_of_triangle_ = nullptr;
-  if (is_shape(geometry, hit.object)) {
-    material_ = of_file(shape_instance(geometry, hit.object).material);
-    return;
-  }
-  const TriangleMesh& part = geometry.meshes[geometry.mesh_instances.mesh_of(hit.object)].parts[hit.part];
-  material_ = of_file(part.material), first_primitive_ = part.first_primitive;
-  if (!part.polygon_of_triangle.empty()) polygon_of_triangle_ = part.polygon_of_triangle.data();
-}
-
-SurfaceIds surface_ids(const Scene& scene, const HitIds& hit) noexcept { return SurfaceIdReader(scene)(hit); }
-
 SurfacePoint surface_point(const Scene& scene, const Rayf& ray_world, const HitIds& ids, float t, float u, float v,
                            float time) noexcept {
   if (is_shape(scene.geometry, ids.object)) return shape_point(scene, ray_world, ids, t, time, true);

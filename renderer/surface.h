@@ -7,6 +7,7 @@
 #include "accel/accelerated_scene.h"
 #include "core/lane_vec.h"
 #include "renderer/scene.h"
+#include "renderer/surface_ids.h"
 
 namespace alhazen {
 
@@ -31,39 +32,6 @@ struct BasicSurfacePoint {
   }
 };
 using SurfacePoint = BasicSurfacePoint<float>;
-
-struct HitIds {
-  uint32_t object, part, primitive;
-};
-
-/// What the scene signature says of a surface.
-struct SurfaceIds {
-  uint32_t node;       // glTF's
-  uint32_t primitive;  // polygon in the node's mesh, 0 on a shape
-  uint32_t material;   // glTF's; kNone for the default material
-  friend bool operator==(const SurfaceIds&, const SurfaceIds&) = default;
-};
-[[nodiscard]] SurfaceIds surface_ids(const Scene& scene, const HitIds& hit) noexcept;
-
-/// The same for hit after hit, many of which are on the part that was hit before.
-class SurfaceIdReader {
- public:
-  explicit SurfaceIdReader(const Scene& scene) : scene_(scene) {}
-
-  [[nodiscard]] SurfaceIds operator()(const HitIds& hit) noexcept {
-    if (hit.object != object_ || hit.part != part_) look_up(hit);
-    return {node_, first_primitive_ + (polygon_of_triangle_ ? polygon_of_triangle_[hit.primitive] : hit.primitive),
-            material_};
-  }
-
- private:
-  void look_up(const HitIds& hit) noexcept;
-
-  const Scene& scene_;
-  uint32_t object_ = kNone, part_ = 0;  // of the hit before
-  uint32_t node_ = 0, material_ = 0, first_primitive_ = 0;
-  const uint32_t* polygon_of_triangle_ = nullptr;  // null: a polygon each
-};
 
 /// The surface where `ray_world` hits at t, with barycentric u and v for triangles, at that time of the shutter.
 [[nodiscard]] SurfacePoint surface_point(const Scene& scene, const Rayf& ray_world, const HitIds& ids, float t, float u,

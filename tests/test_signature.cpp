@@ -8,6 +8,8 @@
 #include "inspect/signature.h"
 #include "loaders/image_file.h"
 #include "materials/texture.h"
+#include "renderer/surface_ids.h"
+#include "tests/uniform.h"
 
 namespace alhazen {
 namespace {
@@ -51,6 +53,51 @@ TEST(Signature, DiffersFromItselfNowhereAndFromAnotherWhereAnyChannelDoes) {
   EXPECT_EQ(diff.details, 2u);
   const auto marked = [&](size_t p) { return diff.picture.pixels[4 * p] == 1.0f; };
   for (size_t p = 0; p < 40 * 30; ++p) EXPECT_EQ(marked(p), p >= 5 && p <= 8) << p;
+}
+
+TEST(Signature, IdsOfLanesAreThoseOfEachHit) {
+  using U = UintOf<ShadingLanes>;
+  constexpr uint32_t kTriangles = 50, kObjects = 6;
+  Uniform uniform(4);
+  Scene scene;
+  scene.materials.resize(4);  // the last is none of the file's
+  scene.geometry.shapes.push_back(Sphere{1});
+  for (uint32_t i = 0; i < kObjects / 2; ++i) {
+    std::vector<TriangleMesh> parts(2);
+    for (TriangleMesh& part : parts) {
+      part.material = uniform.bits() % 4, part.first_primitive = uniform.bits() % 100;
+      part.triangles.resize(kTriangles);
+      for (uint32_t k = 0; k < kTriangles && i > 0; ++k) part.polygon_of_triangle.push_back(k / (1 + i));
+    }
+    scene.geometry.meshes.push_back({"", parts});
+    scene.geometry.mesh_instances.push_back({i, 10 + i, {}});
+    scene.geometry.shape_instances.push_back({0, 20 + i, uniform.bits() % 4, {}});
+  }
+  SurfaceIdReader read(scene);
+  for (int trial = 0; trial < 20000; ++trial) {
+    LaneArray<U> object, part, primitive;
+    HitIds hit{kNone, 0, 0};
+    for (size_t k = 0; k < kWidthOf<U>; ++k) {
+      if (uniform.bits() % 4 == 0) hit.object = uniform.bits() % 3 ? uniform.bits() % kObjects : kNone;
+      hit.part = uniform.bits() % 2, hit.primitive = uniform.bits() % (hit.object < kObjects / 2 ? kTriangles : 1);
+      object[k] = hit.object, part[k] = hit.part, primitive[k] = hit.object == kNone ? uniform.bits() : hit.primitive;
+    }
+    const size_t count = 1 + uniform.bits() % kWidthOf<U>;
+    const std::array<U, 3> ids = read(object.load(), part.load(), primitive.load(), count);
+    std::array<uint32_t, 3 * (kWidthOf<U> + 1)> stored;
+    stored.fill(7);
+    LaneArray<IntOf<U>> places;  // from the last to the first
+    for (size_t k = 0; k < kWidthOf<U>; ++k) places[k] = int32_t(3 * (kWidthOf<U> - 1 - k));
+    store_triples_at(address_of<IntOf<U>>(stored.data(), places.load()), ids, count);
+    for (size_t k = 0; k < kWidthOf<U>; ++k) {
+      const uint32_t* found = &stored[size_t(places[k])];
+      SurfaceIds expected{kNone, kNone, kNone};
+      if (object[k] != kNone) expected = surface_ids(scene, {object[k], part[k], primitive[k]});
+      if (k >= count) expected = {7, 7, 7};
+      ASSERT_EQ((SurfaceIds{found[0], found[1], found[2]}), expected) << trial << " " << k;
+    }
+    ASSERT_EQ(stored.back(), 7u);
+  }
 }
 
 TEST(Signature, PictureWithALegendShowsTheColoursThatFilesHold) {
