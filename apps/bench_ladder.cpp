@@ -89,7 +89,7 @@ void print_row(const std::string& name, const Cost& cost, const std::optional<Co
 void print_ladder(const std::string& file, int width, int height) {
   LoadedScene loaded = load_gltf(file, print_warning);
   Scene& scene = loaded.scene;
-  scene.images = decode_images(std::move(loaded.encoded), print_warning, *loaded.budget);
+  decode_textures(loaded, print_warning);
   bake_single_instances(scene.geometry);
   const Camera camera =
       scene.cameras.empty() ? framing_camera(scene.geometry, double(width) / height) : scene.cameras[0];

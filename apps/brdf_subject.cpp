@@ -112,7 +112,7 @@ Subject material_of(const SubjectArguments& arguments) {
   const auto budget = std::make_shared<LoadBudget>(arguments.limits);
   LoadedScene loaded = load_gltf(arguments.file, print_warning, {}, budget);
   const uint32_t material = pick_material(loaded.scene, arguments.material);
-  loaded.scene.images = decode_images(std::move(loaded.encoded), print_warning, *budget);
+  decode_textures(loaded, print_warning);
   return material_subject(loaded.scene, material, arguments.uv);
 }
 

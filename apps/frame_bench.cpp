@@ -103,7 +103,7 @@ std::unique_ptr<Subject> prepare(const std::string& file, const RenderOptions& o
   const auto start = Clock::now();
   subject->loaded = load_gltf(file, print_warning);
   Scene& scene = subject->loaded.scene;
-  scene.images = decode_images(std::move(subject->loaded.encoded), print_warning, *subject->loaded.budget);
+  decode_textures(subject->loaded, print_warning);
   bake_single_instances(scene.geometry);
   subject->camera = pick_camera(scene, "", double(options.width) / options.height);
   if (scene.lights.empty() && !scene.has_ambient && !scene.environment) add_studio_lights(scene, subject->camera);

@@ -76,14 +76,10 @@ std::unique_ptr<AcceleratedScene> build_scene(LoadedScene& loaded, const Surface
   std::unique_ptr<AcceleratedScene> accelerated;
   const auto build = [&] { accelerated = std::make_unique<AcceleratedScene>(loaded.scene.geometry, filter, options); };
   if (loaded.encoded.empty()) return build(), std::move(accelerated);
-  std::vector<TextureImage> images;
   {
     const ForkJoin order;
-    tbb::parallel_invoke(order.task(build), order.task([&] {
-      images = decode_images(std::move(loaded.encoded), print_warning, *loaded.budget);
-    }));
+    tbb::parallel_invoke(order.task(build), order.task([&] { decode_textures(loaded, print_warning); }));
   }
-  loaded.scene.images = std::move(images);
   return accelerated;
 }
 

@@ -16,6 +16,7 @@
 #include "loaders/image_library.h"
 #include "loaders/in_parallel.h"
 #include "materials/mipmap.h"
+#include "materials/texel_records.h"
 
 namespace alhazen {
 namespace {
@@ -126,6 +127,13 @@ std::vector<TextureImage> decode_images(std::vector<EncodedImage> encoded, const
 std::vector<TextureImage> decode_images(std::vector<EncodedImage> encoded, const WarningSink& warn) {
   LoadBudget budget;
   return decode_images(std::move(encoded), warn, budget);
+}
+
+void decode_textures(LoadedScene& loaded, const WarningSink& warn) {
+  Scene& scene = loaded.scene;
+  std::vector<TextureImage> images = decode_images(std::move(loaded.encoded), warn, *loaded.budget);
+  lay_side_by_side(scene.materials, scene.textures, images);
+  scene.images = std::move(images);
 }
 
 }  // namespace alhazen

@@ -14,4 +14,7 @@ namespace alhazen {
                                                       LoadBudget& budget);
 [[nodiscard]] std::vector<TextureImage> decode_images(std::vector<EncodedImage> encoded, const WarningSink& warn);
 
+/// Decodes a scene's images into it, laid out as its materials look them up.
+void decode_textures(LoadedScene& loaded, const WarningSink& warn);
+
 }  // namespace alhazen

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <variant>
@@ -12,6 +13,10 @@
 
 namespace alhazen {
 
+struct TexelRecords;
+
+enum class ColorSpace : uint8_t { linear, srgb };
+
 /// A decoded image as its file had it: rows from the top left, 1 to 4 interleaved channels (grey, grey-alpha, RGB,
 /// RGBA), straight alpha, samples not linearised. Eight bits stay eight bits. An image that could not be decoded has
 /// width 0 and reads as opaque white.
@@ -19,6 +24,10 @@ struct TextureImage {
   int width = 0, height = 0, channels = 0;                                                // of level 0
   std::variant<std::vector<uint8_t>, std::vector<uint16_t>, std::vector<float>> samples;  // level after level
   int levels = 1;                                                                         // mip levels
+  // Where its texels lie in records together with those of other images, `samples` are empty.
+  std::shared_ptr<const TexelRecords> records = nullptr;
+  size_t first_byte = 0;                  // of each record
+  ColorSpace space = ColorSpace::linear;  // of its colours there
 };
 
 /// Of a mip level: its size, and how many texels the levels before it have.
@@ -59,8 +68,6 @@ struct TextureUse {
   friend bool operator==(const TextureUse&, const TextureUse&) = default;
 };
 
-enum class ColorSpace : uint8_t { linear, srgb };
-
 /// Two texels beside each other, or two rows, in each lane.
 template <class F, class Number>
 struct Neighbours {
@@ -89,6 +96,13 @@ struct TextureLookup {
   } key;                        // no width: nothing is found yet
   F fraction;                   // of the smaller level of two
   LevelTexels<F> large, small;  // `small` where fractions are not 0
+
+  /// The last records that were mixed, for all images that have a part in them.
+  struct Mixed {
+    const TexelRecords* records = nullptr;
+    Key key;
+    std::array<LaneArray<F>, kWidthOf<F>> bytes;  // of each lane, decoded
+  } mixed;
 };
 
 /// What a surface brings to a material: interpolated at the hit. Of lanes: at each of their hits.
@@ -134,6 +148,14 @@ void prefetch(const TextureTable& table, std::span<const TextureUse* const> uses
 
 /// As many points as are shaded at once: what look-ups and materials are compiled for beside single points.
 using ShadingLanes = std::experimental::native_simd<float>;
+
+/// Whether lanes are as many as a record of texels has bytes.
+inline constexpr bool kMixesRecords =
+#if defined __AVX512F__ && defined __GLIBCXX__
+    kWidthOf<ShadingLanes> == 16;
+#else
+    false;
+#endif
 
 /// IEC 61966-2-1 and back, for one channel. Exact at 0 and 1.
 [[nodiscard]] float linear_from_srgb(float encoded) noexcept;

@@ -38,8 +38,8 @@ const std::filesystem::path& folder() {
 }
 
 void build(LoadedScene& loaded) {
+  decode_textures(loaded, {});
   Scene& scene = loaded.scene;
-  scene.images = decode_images(loaded.encoded, {}, *loaded.budget);
   bake_single_instances(scene.geometry);
   const Camera camera = scene.cameras.empty() ? framing_camera(scene.geometry, 1) : scene.cameras[0];
   std::vector<Opacity> opacity;

@@ -21,9 +21,8 @@ struct Subject {
 
   Subject(const std::filesystem::path& file, double aspect) {
     LoadedScene loaded = load_gltf(file, [](const std::string&) {});
+    decode_textures(loaded, [](const std::string&) {});
     scene = std::move(loaded.scene);
-    scene.images = decode_images(
-        std::move(loaded.encoded), [](const std::string&) {}, *loaded.budget);
     bake_single_instances(scene.geometry);
     camera = scene.cameras.empty() ? framing_camera(scene.geometry, aspect) : scene.cameras[0];
     if (scene.lights.empty() && !scene.has_ambient) add_studio_lights(scene, camera);

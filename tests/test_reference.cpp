@@ -272,7 +272,7 @@ TEST(ReferenceAccelerators, AndEmbreeGiveOneSignatureOfTheExamplesBesideTheProje
     if (entry.path().extension() != ".gltf") continue;
     SCOPED_TRACE(entry.path().filename().string());
     LoadedScene loaded = load_gltf(entry.path(), [](const std::string&) {});
-    loaded.scene.images = decode_images(loaded.encoded, [](const std::string&) {});
+    decode_textures(loaded, [](const std::string&) {});
     bake_single_instances(loaded.scene.geometry);
     const Camera& camera = loaded.scene.cameras.at(0);
     expect_the_same_from_all(loaded.scene, camera, camera_rays(camera, 80, 60));

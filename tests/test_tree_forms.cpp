@@ -26,9 +26,8 @@ struct Showcase {
 
   Showcase() {
     LoadedScene loaded = load_gltf(ALHAZEN_SHOWCASE, [](const std::string&) {});
+    decode_textures(loaded, [](const std::string&) {});
     scene = std::move(loaded.scene);
-    scene.images = decode_images(
-        std::move(loaded.encoded), [](const std::string&) {}, *loaded.budget);
     bake_single_instances(scene.geometry);
     accelerated = std::make_unique<AcceleratedScene>(scene.geometry, surface_filter(scene, opacity));
   }
