@@ -2,6 +2,7 @@
 // several lanes.
 #pragma once
 
+#include "core/power.h"
 #include "materials/material.h"
 
 namespace alhazen {
@@ -43,20 +44,6 @@ template <class F = float>
           p.fresnel};
 }
 
-/// x^exponent where `wanted`, else 0.
-template <class F>
-[[nodiscard]] F power_where(const MaskOf<F>& wanted, const F& x, float exponent) noexcept {
-  if constexpr (!IsLanes<F>) {
-    return wanted ? std::pow(x, exponent) : 0;
-  } else {
-    LaneArray<F> values;
-    values.store(x);
-    const uint32_t bits = lane_bits(wanted);
-    for (size_t k = 0; k < kWidthOf<F>; ++k) values[k] = bits >> k & 1 ? std::pow(values[k], exponent) : 0;
-    return values.load();
-  }
-}
-
 /// What a light of unit I adds: r_d max(0, n·s) + r_s max(0, r·b)^alpha, the second term only where n·s > 0.
 /// n: unit normal turned towards b; s: unit, to the light; b: unit, back along the ray.
 template <class F>
@@ -67,7 +54,7 @@ template <class F>
   BasicRgb<F> light = bsdf.diffuse * ns;
   if (max_component(bsdf.specular) > 0) {
     const F rb = dot(F(F(2) * ns) * n - s, b);
-    light += BasicRgb<F>(bsdf.specular) * power_where(MaskOf<F>(faces && rb > F(0)), smaller(rb, F(1)), bsdf.shininess);
+    light += BasicRgb<F>(bsdf.specular) * select(rb > F(0), power(smaller(rb, F(1)), F(bsdf.shininess)), F(0));
   }
   return select(faces, light, BasicRgb<F>(F(0)));
 }

@@ -58,11 +58,10 @@ class Whitted {
 
   void count_rays(bool of_camera) {
     const size_t n = arena_.current.size();
-    if (of_camera) {
-      arena_.rays_by_kind[size_t(RayKind::camera)] += n;
-      return;
-    }
-    for (size_t i = 0; i < n; ++i) ++arena_.rays_by_kind[size_t(arena_.current.paths.kind[i])];
+    if (of_camera) return (void)(arena_.rays_by_kind[size_t(RayKind::camera)] += n);
+    const RayKind* const kinds = arena_.current.paths.kind.data();
+    for (const RayKind kind : {RayKind::camera, RayKind::mirror, RayKind::refracted, RayKind::straight})
+      arena_.rays_by_kind[size_t(kind)] += size_t(std::count(kinds, kinds + n, kind));
   }
 
   void log(WaveKind kind, const RayWave& rays) {

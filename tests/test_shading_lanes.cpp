@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "core/angle.h"
+#include "core/power.h"
 #include "materials/base_layer.h"
 #include "materials/phong.h"
 #include "materials/texture.h"
@@ -30,6 +31,26 @@ TEST(ShadingLanes, AnglesAreThoseOfTheLibraryToFewRoundings) {
   EXPECT_EQ(arc_cosine(1.0f), 0);
   EXPECT_EQ(arc_tangent(0.0f, 0.0f), 0);
   EXPECT_FLOAT_EQ(arc_tangent(0.0f, -1.0f), std::numbers::pi_v<float>);
+}
+
+TEST(ShadingLanes, PowersAreThoseOfTheLibraryToFewRoundings) {
+  Uniform uniform(6);
+  for (int i = 0; i < 200000; ++i) {
+    LaneArray<F> x, powers;
+    const float exponent = i % 9 ? std::exp2(uniform(-4, 14)) : 0;
+    for (size_t k = 0; k < kLanes; ++k)
+      x[k] = k == 0 ? 1 : k % 2 ? 1 - std::exp2(uniform(-24, 0)) : std::exp2(uniform(-126, 0));
+    powers.store(power(x.load(), F(exponent)));
+    for (size_t k = 0; k < kLanes; ++k) {
+      const double expected = std::pow(double(x[k]), double(exponent));
+      const double allowed = 2e-7 * (1 + std::abs(std::log2(expected))) * expected;
+      if (expected < 0x1p-125)
+        EXPECT_LE(powers[k], 0x1p-124f);
+      else
+        EXPECT_NEAR(powers[k], expected, allowed) << x[k] << " " << exponent;
+      EXPECT_TRUE(same_bits(powers[k], power(x[k], exponent)));
+    }
+  }
 }
 
 TEST(ShadingLanes, NextUpIsTheNeighbourInEveryLane) {
