@@ -132,7 +132,10 @@ std::vector<TextureImage> decode_images(std::vector<EncodedImage> encoded, const
 void decode_textures(LoadedScene& loaded, const WarningSink& warn) {
   Scene& scene = loaded.scene;
   std::vector<TextureImage> images = decode_images(std::move(loaded.encoded), warn, *loaded.budget);
-  lay_side_by_side(scene.materials, scene.textures, images);
+  try {
+    lay_side_by_side(scene.materials, scene.textures, images, loaded.budget->left());
+  } catch (const std::bad_alloc&) {  // they are looked up where they are
+  }
   scene.images = std::move(images);
 }
 

@@ -1,6 +1,7 @@
 // How much a file may ask for, and the count of what it has been given.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <mutex>
@@ -39,6 +40,7 @@ class LoadBudget {
 
   [[nodiscard]] const LoadLimits& limits() const { return limits_; }
   [[nodiscard]] uint64_t taken() const { return taken_; }  // bytes
+  [[nodiscard]] uint64_t left() const { return limit() - std::min<uint64_t>(limit(), taken_); }
 
   /// A file's own bytes; a file that is read again lets through no more.
   void take_file(const std::string& place, uint64_t bytes);

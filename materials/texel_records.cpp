@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <limits>
 #include <memory>
 
 #include "core/fork_join.h"
@@ -127,7 +126,7 @@ void lay(const Group& group, std::vector<TextureImage>& images) {
 }  // namespace
 
 void lay_side_by_side(std::span<const Material> materials, std::span<const Texture> textures,
-                      std::vector<TextureImage>& images) {
+                      std::vector<TextureImage>& images, uint64_t spare) {
   if (!kMixesRecords) return;
   const auto is_free = [&](const Role& role) {
     if (role.use->texture >= textures.size()) return false;
@@ -142,7 +141,8 @@ void lay_side_by_side(std::span<const Material> materials, std::span<const Textu
     for (const Role& first : left) {
       if (!is_free(first)) continue;
       const Group group = group_around(first, left, textures, images);
-      if (group.members.size() > 1 && group.bytes >= TexelRecords::kLeastBytes) lay(group, images);
+      if (group.members.size() < 2 || group.bytes < TexelRecords::kLeastBytes) continue;
+      if (texels_of(images[group.members[0].image]) * group.bytes <= spare) lay(group, images);
     }
   }
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -33,11 +34,11 @@ struct TexelRecords {
   }
 };
 
-/// Lays the texels of images that a material looks up alike, by `core_textures`, into common records; the images keep
+/// Lays the texels of images that a metallic-roughness material looks up alike into common records; the images keep
 /// none of their own. Each goes into one at most, the first that a material asks for. Only where lanes are so wide that
-/// it pays.
+/// it pays, and as far as `spare` bytes of memory hold the records of one group beside its images.
 void lay_side_by_side(std::span<const Material> materials, std::span<const Texture> textures,
-                      std::vector<TextureImage>& images);
+                      std::vector<TextureImage>& images, uint64_t spare = std::numeric_limits<uint64_t>::max());
 
 /// What a hit in each lane sees of all bytes of the records, where the lookup's texels lie: as look-ups of single
 /// images would mix them, to the bit. Only where lanes are so wide, too.

@@ -127,7 +127,9 @@ TEST(TexelRecords, LeaveWhatDiffersInImagesOfTheirOwn) {
   materials[0].metallic_roughness_texture.texture = 2, materials[0].occlusion_texture.texture = 3;
   materials[0].emissive_texture.texture = 4;
   materials[1].base_color_texture.texture = 0, materials[1].normal_texture.texture = 5;  // one is taken
-  lay_side_by_side(materials, textures, images);
+  lay_side_by_side(materials, textures, images, 35);
+  EXPECT_FALSE(images[0].records) << "36 bytes do not fit";
+  lay_side_by_side(materials, textures, images, 36);
   const TexelRecords* const records = images[0].records.get();
   ASSERT_TRUE(records);
   EXPECT_EQ(records->size, 9u);
