@@ -73,4 +73,15 @@ void mix_records(const TexelRecords& records, TextureLookup<ShadingLanes>& looku
 void mix_records(const TexelRecords&, TextureLookup<ShadingLanes>&) noexcept {}
 #endif
 
+BasicRgba<ShadingLanes> part_of(const TextureLookup<ShadingLanes>::Mixed& mixed, const TextureImage& image) noexcept {
+  using F = ShadingLanes;
+  using A = AddressOf<F>;
+  const A first(reinterpret_cast<uintptr_t>(mixed.bytes[0].values.data()) + image.first_byte * sizeof(float));
+  const A at = first + A([](auto k) { return k * sizeof(mixed.bytes[0]); });
+  const auto channel = [&](int c) { return load_at<F>(at + A(uint64_t(c) * sizeof(float))); };
+  if (image.channels < 3) return {BasicRgb<F>(channel(0)), image.channels == 2 ? channel(1) : F(1)};
+  const std::array<F, 3> rgb = load_triples_at<F>(at);
+  return {{rgb[0], rgb[1], rgb[2]}, image.channels == 4 ? channel(3) : F(1)};
+}
+
 }  // namespace alhazen

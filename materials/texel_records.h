@@ -44,4 +44,8 @@ void lay_side_by_side(std::span<const Material> materials, std::span<const Textu
 /// images would mix them, to the bit. Only where lanes are so wide, too.
 void mix_records(const TexelRecords& records, TextureLookup<ShadingLanes>& lookup) noexcept;
 
+/// Of what was mixed, that of one image.
+[[nodiscard]] BasicRgba<ShadingLanes> part_of(const TextureLookup<ShadingLanes>::Mixed& mixed,
+                                              const TextureImage& image) noexcept;
+
 }  // namespace alhazen
