@@ -30,17 +30,30 @@ bool is_present(const void* data, const Crossing& crossing) noexcept {
   return material.alpha_mode != AlphaMode::mask || coverage(material, texture_table(scene), s.inputs()) > 0;
 }
 
-Rgb light_passing(const void* data, const Crossing& crossing) noexcept {
-  const Scene& scene = *static_cast<const Scene*>(data);
-  const SurfacePoint s = surface_point(scene, crossing);
-  return straight_transmittance(scene.materials[s.material], texture_table(scene), s.inputs());
+/// Where it is the same at every point of a surface, which has vertex colours or not.
+std::optional<Rgb> light_passing_anywhere(const Scene& scene, uint32_t material, bool has_colors) noexcept {
+  if (has_colors || has_passing_textures(scene.materials[material])) return {};
+  return straight_transmittance(scene.materials[material], texture_table(scene), {});
 }
 
 std::optional<Rgb> light_passing_shape(const void* data, uint32_t object) noexcept {
   const Scene& scene = *static_cast<const Scene*>(data);
-  const Material& material = scene.materials[shape_instance(scene.geometry, object).material];
-  if (has_passing_textures(material)) return {};
-  return straight_transmittance(material, texture_table(scene), {});
+  return light_passing_anywhere(scene, shape_instance(scene.geometry, object).material, false);
+}
+
+std::optional<Rgb> light_passing_part(const Scene& scene, const Crossing& crossing) noexcept {
+  const Geometry& geometry = scene.geometry;
+  const TriangleMesh& part = geometry.meshes[geometry.mesh_instances.mesh_of(crossing.object)].parts[crossing.part];
+  return light_passing_anywhere(scene, part.material, !part.colors.empty());
+}
+
+Rgb light_passing(const void* data, const Crossing& crossing) noexcept {
+  const Scene& scene = *static_cast<const Scene*>(data);
+  if (const auto passing = is_shape(scene.geometry, crossing.object) ? light_passing_shape(data, crossing.object)
+                                                                     : light_passing_part(scene, crossing))
+    return *passing;
+  const SurfacePoint s = surface_point(scene, crossing);
+  return straight_transmittance(scene.materials[s.material], texture_table(scene), s.inputs());
 }
 
 template <class U>
