@@ -6,6 +6,7 @@
 
 #include "accel/accelerated_scene.h"
 #include "renderer/render.h"
+#include "tests/uniform.h"
 
 namespace alhazen {
 namespace {
@@ -62,6 +63,31 @@ TEST(Transparency, OverTheBackgroundATransparentPictureIsTheOpaqueOne) {
     ASSERT_EQ(opaque[i + 3], 1.0f);
   }
   EXPECT_TRUE(empty > 0 && partial > 0 && full > 0);
+}
+
+TEST(Transparency, LightPassesAPaneByTheAlphaOfItsMaterialAndVertices) {
+  Uniform uniform(8);
+  for (const bool colored : {false, true}) {
+    Scene scene = spheres_behind_a_pane();
+    scene.geometry.shape_instances.clear();
+    TriangleMesh& pane = scene.geometry.meshes[0].parts[0];
+    if (colored) pane.colors = {{1, 1, 1, 0.2f}, {1, 1, 1, 1}, {1, 1, 1, 0.6f}};
+    std::vector<Opacity> opacity;
+    const SurfaceFilter filter = surface_filter(scene, opacity);
+    const AcceleratedScene accelerated(scene.geometry, filter);
+    RayWave rays;
+    std::vector<float> expected;
+    for (int i = 0; i < 500; ++i) {
+      const float u = uniform(0.01f, 0.98f), v = uniform(0.01f, 0.99f - u);
+      const Vec3f p = pane.positions[0] * (1 - u - v) + pane.positions[1] * u + pane.positions[2] * v;
+      const Vec3f away = Vec3f{0, 0, 1} + uniform.direction() * 0.3f;
+      rays.push({p + away, away * -2.0f, 0, 1});
+      expected.push_back(1 - 0.3f * (colored ? 0.2f * (1 - u - v) + u + 0.6f * v : 1.0f));
+    }
+    Lanes<Rgb> visible;
+    accelerated.transmittance(rays, Coherence::incoherent, visible);
+    for (size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(visible[i].r, expected[i], 1e-5f) << colored << " " << i;
+  }
 }
 
 TEST(Render, StoppedPixelsAreFinishedOrEmpty) {
