@@ -30,9 +30,9 @@ template <class F>
        F(2.4999993993e-1f)) *
           f +
       F(3.3333331174e-1f);
-  const F curved = f * z * p - F(0.5f) * z;         // ln m - f
-  constexpr float kLog2OfE = 0.44269504088896341f;  // minus 1
-  const F log2_x = curved * F(kLog2OfE) + f * F(kLog2OfE) + curved + f + e;
+  const F curved = f * z * p - F(0.5f) * z;  // ln m - f
+  constexpr float kLog2OfELess1 = 0.44269504088896341f;
+  const F log2_x = curved * F(kLog2OfELess1) + f * F(kLog2OfELess1) + curved + f + e;
 
   const F result = larger(F(log2_x * exponent), F(-127));  // not above 0
   const I whole = convert<I>(F(result - F(0.5f)));

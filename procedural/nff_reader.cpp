@@ -27,6 +27,7 @@ class NffWords {
       if (auto word = next_on_line()) return word;
       if (!std::getline(in_, line_)) return std::nullopt;
       ++line_number_, at_ = line_.starts_with('#') ? line_.size() : 0;
+      if (line_.find('\0') != std::string::npos) fail("holds a byte of 0, expected the text of an NFF file");
     }
   }
 

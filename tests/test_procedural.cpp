@@ -170,5 +170,14 @@ TEST(Nff, NamesTheLineOfAnError) {
     }
 }
 
+TEST(Nff, IsText) {
+  try {
+    (void)read(std::string("glTF\x02\0\0\0s 1 2 3 4\n", 18));
+    ADD_FAILURE() << "bytes of 0 were read";
+  } catch (const LoadError& error) {
+    EXPECT_NE(std::string(error.what()).find("line 1: holds a byte of 0, expected the text"), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace alhazen

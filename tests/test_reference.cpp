@@ -1,6 +1,7 @@
 // The reference accelerators and Embree see the same scenes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <random>
@@ -127,6 +128,7 @@ SurfaceIds signature(const Scene& scene, const HitWave& hits, size_t i) {
 }
 
 void expect_same_bits(const HitWave& a, const HitWave& b, const std::string& name) {
+  ASSERT_EQ(a.t.size(), b.t.size()) << name;
   for (size_t i = 0; i < a.t.size(); ++i) {
     ASSERT_EQ(a.object[i], b.object[i]) << name << ", ray " << i;
     if (a.object[i] == kNone) continue;
@@ -167,24 +169,27 @@ void expect_signature_of(const Subject& subject, const HitWave& reference, const
   EXPECT_LE(1000 * grazing, rays.size());
 }
 
-void expect_the_same_from_all(const Scene& scene, const Camera& camera, const RayWave& rays) {
+/// That all rungs and Embree see the same; how many of the rays hit something.
+size_t expect_the_same_from_all(const Scene& scene, const Camera& camera, const RayWave& rays) {
   const Subject subject(scene, camera);
   const Answer reference = closest(subject.rungs[0], rays);
   for (const Rung& rung : subject.rungs) expect_same_bits(reference.hits, closest(rung, rays).hits, rung.name);
   expect_signature_of(subject, reference.hits, rays);
+  const Lanes<uint32_t>& seen = reference.hits.object;
+  return size_t(std::count_if(seen.data(), seen.data() + seen.size(), [](uint32_t object) { return object != kNone; }));
 }
 
 TEST(ReferenceAccelerators, AndEmbreeGiveOneSignatureOfRandomScenes) {
   for (uint32_t seed = 0; seed < uint32_t(trials(6)); ++seed) {
     const Scene scene = random_scene(seed);
     for (const Camera& camera : {perspective_camera(), orthographic_camera(), camera_inside()})
-      expect_the_same_from_all(scene, camera, camera_rays(camera, 80, 60));
+      EXPECT_GT(expect_the_same_from_all(scene, camera, camera_rays(camera, 80, 60)), 400u) << seed;
   }
 }
 
 TEST(ReferenceAccelerators, AgreeOnRaysOfNoCamera) {
   for (uint32_t seed = 0; seed < 6; ++seed)
-    expect_the_same_from_all(random_scene(seed), perspective_camera(), random_segments(seed, 2000));
+    EXPECT_GT(expect_the_same_from_all(random_scene(seed), perspective_camera(), random_segments(seed, 2000)), 200u);
 }
 
 TEST(ReferenceAccelerators, AndEmbreeLetTheSameLightThrough) {
@@ -268,15 +273,18 @@ TEST(ReferenceAccelerators, AnswerForAnEmptyScene) {
 TEST(ReferenceAccelerators, AndEmbreeGiveOneSignatureOfTheExamplesBesideTheProject) {
   namespace fs = std::filesystem;
   if (!fs::is_directory(ALHAZEN_EXAMPLES)) GTEST_SKIP() << "there is no " << ALHAZEN_EXAMPLES;
+  size_t scenes = 0;
   for (const auto& entry : fs::directory_iterator(ALHAZEN_EXAMPLES)) {
     if (entry.path().extension() != ".gltf") continue;
+    ++scenes;
     SCOPED_TRACE(entry.path().filename().string());
     LoadedScene loaded = load_gltf(entry.path(), [](const std::string&) {});
     decode_textures(loaded, [](const std::string&) {});
     bake_single_instances(loaded.scene.geometry);
     const Camera& camera = loaded.scene.cameras.at(0);
-    expect_the_same_from_all(loaded.scene, camera, camera_rays(camera, 80, 60));
+    EXPECT_GT(expect_the_same_from_all(loaded.scene, camera, camera_rays(camera, 80, 60)), 0u);
   }
+  EXPECT_GT(scenes, 0u);
 }
 
 }  // namespace
