@@ -1,5 +1,6 @@
 // AcceleratedScene's queries: waves laid out as Embree's packets, and its answers as the scene numbers things.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <chrono>
 #include <cmath>
@@ -15,8 +16,11 @@
 namespace alhazen {
 namespace {
 
-/// Of directions in a packet that is traced as one: beyond it, its rays meet too many nodes that only some of them
-/// need.
+/// A packet traced as one goes down once for each octant of directions in it: with up to so many, faster than as rays
+/// that have nothing to do with one another.
+constexpr int kFewOctants = 3;
+
+/// Of directions in a packet that is traced as one, though it be around an axis, where more octants meet.
 constexpr float kLeastCosine = 0.9f;
 
 /// Packets that call shapes for fewer lanes than this, on average, are slower than rays one by one. What the first
@@ -65,29 +69,52 @@ uint32_t choose_lanes(const BuiltScene& built, const RayWave& wave, size_t first
   return bits;
 }
 
-/// Whether a packet's rays run side by side, so that they meet mostly the same nodes.
+/// The components of a packet's directions.
 template <int width>
-bool run_together(const RayWave& wave, size_t first, uint32_t lanes) {
+Vec3<FloatLanes<width>> directions_of(const RayWave& wave, size_t first) {
+  const auto load = [&](const Lanes<float>& row) {
+    return FloatLanes<width>(&row[first], std::experimental::element_aligned);
+  };
+  return {load(wave.direction.x), load(wave.direction.y), load(wave.direction.z)};
+}
+
+/// In how many octants the directions of a packet's lanes lie.
+template <int width>
+int count_octants(const Vec3<FloatLanes<width>>& direction, uint32_t lanes) {
+  const FloatLanes<width> zero(0);
+  const std::array negative{lane_bits(direction.x < zero), lane_bits(direction.y < zero),
+                            lane_bits(direction.z < zero)};
+  int octants = 0;
+  for (; lanes != 0; ++octants) {
+    const int lead = std::countr_zero(lanes);
+    uint32_t alike = lanes;
+    for (const uint32_t bits : negative) alike &= bits >> lead & 1 ? bits : ~bits;
+    lanes &= ~alike;
+  }
+  return octants;
+}
+
+/// Whether directions lie in a narrow cone around the first.
+template <int width>
+bool are_alike(const Vec3<FloatLanes<width>>& direction, uint32_t lanes) {
   using F = FloatLanes<width>;
-  if (lanes == 0) return false;
-  const auto row = [&](const Lanes<float>& of) { return F(&of[first], std::experimental::element_aligned); };
-  const F x = row(wave.direction.x), y = row(wave.direction.y), z = row(wave.direction.z);
-  const F squared = x * x + y * y + z * z;
   const auto lead = size_t(std::countr_zero(lanes));
-  const F along = x * F(x[lead]) + y * F(y[lead]) + z * F(z[lead]);
+  const F squared = dot(direction, direction);
+  const F along = dot(direction, Vec3<F>{F(direction.x[lead]), F(direction.y[lead]), F(direction.z[lead])});
   const auto apart = along < 0 || along * along < squared * F(kLeastCosine * kLeastCosine * squared[lead]);
   return (lane_bits(apart) & lanes) == 0;
 }
 
+/// Whether a packet's rays run side by side, so that they meet mostly the same nodes.
+template <int width>
+bool run_together(const RayWave& wave, size_t first, uint32_t lanes) {
+  const auto direction = directions_of<width>(wave, first);
+  return lanes != 0 && (count_octants<width>(direction, lanes) <= kFewOctants || are_alike<width>(direction, lanes));
+}
+
 template <int width>
 bool are_of_one_octant(const RayWave& wave, size_t first, uint32_t lanes) {
-  const auto alike = [&](const Lanes<float>& row) {
-    uint32_t negative = 0;
-    for (size_t k = 0; k < width; ++k) negative |= uint32_t(std::signbit(row[first + k])) << k;
-    negative &= lanes;
-    return negative == 0 || negative == lanes;
-  };
-  return alike(wave.direction.x) && alike(wave.direction.y) && alike(wave.direction.z);
+  return count_octants<width>(directions_of<width>(wave, first), lanes) <= 1;
 }
 
 /// Which packets may be traced as one.
