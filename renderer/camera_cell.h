@@ -1,6 +1,8 @@
 // Cells: the blocks of pixels that one wave belongs to, and the order in which it holds their camera rays.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 
 #include "core/lanes.h"
@@ -15,15 +17,24 @@ struct Cell {
   int x0, y0, x1, y1;  // pixels, end exclusive
 };
 
-/// f(x, y) for every pixel, neighbours side by side in blocks of 4 x 4.
+inline constexpr int kBlockSize = 4;  // pixels a side of what one packet sees
+static_assert(kCellSize % kBlockSize == 0 && std::has_single_bit(unsigned(kCellSize)));
+
+/// f(x, y) for every pixel, row by row in blocks of kBlockSize, block after block along Morton's curve, so that packets
+/// find the nodes, and hits the texels, of their neighbours in the caches.
 template <class F>
 void for_each_pixel(const Cell& cell, const F& f) {
-  for (int by = 0; by < kCellSize; by += 4)
-    for (int bx = 0; bx < kCellSize; bx += 4)
-      for (int k = 0; k < 16; ++k) {
-        const int x = cell.x0 + bx + k % 4, y = cell.y0 + by + k / 4;
-        if (x < cell.x1 && y < cell.y1) f(x, y);
-      }
+  const auto even_bits = [](unsigned morton) {
+    unsigned bits = 0;
+    for (unsigned k = 0; k < 8; ++k) bits |= (morton >> 2 * k & 1) << k;
+    return int(bits);
+  };
+  constexpr unsigned kBlocksASide = kCellSize / kBlockSize;
+  for (unsigned block = 0; block < kBlocksASide * kBlocksASide; ++block) {
+    const int x0 = cell.x0 + even_bits(block) * kBlockSize, y0 = cell.y0 + even_bits(block >> 1) * kBlockSize;
+    for (int y = y0; y < std::min(y0 + kBlockSize, cell.y1); ++y)
+      for (int x = x0; x < std::min(x0 + kBlockSize, cell.x1); ++x) f(x, y);
+  }
 }
 
 /// The same as rows of pixels from the cell's corner.
