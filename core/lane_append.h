@@ -36,10 +36,13 @@ void append_lanes(Lanes<T>& to, uint32_t lanes, const std::array<T, n>& values) 
 template <size_t n, size_t lists>
 class LaneMerger {
  public:
-  explicit LaneMerger(const std::array<uint32_t, lists>& lanes) : lanes_(lanes) {
+  /// The bits of each list: one by one, as a copy of an array that was just filled waits for its memory.
+  template <class... Bits>
+    requires(sizeof...(Bits) == lists)
+  explicit LaneMerger(Bits... lanes) : lanes_{lanes...} {
     for (size_t i = 0; i < lists; ++i) {
-      size_ += size_t(std::popcount(lanes[i]));
-      if (lanes[i] != 0) some_[count_++] = i;
+      size_ += size_t(std::popcount(lanes_[i]));
+      if (lanes_[i] != 0) some_[count_++] = i;
     }
 #if defined __AVX512F__ && defined __BMI2__
     const uint32_t a = lanes_[some_[0]], b = count_ == 2 ? lanes_[some_[1]] : 0;

@@ -19,15 +19,13 @@ void load_lanes(const Scene& scene, const WaveArena& arena, std::span<const uint
   const PathRows& paths = arena.current.paths;
   const HitWave& found = arena.hits;
   LaneArray<IntOf<F>> numbers;
-  for (size_t k = 0; k < kLanes; ++k) {
-    const uint32_t i = hits[k < hits.size() ? k : 0];
-    numbers[k] = int32_t(i);
-    work.hits.ids[k] = {found.object[i], found.part[i], found.primitive[i]};
-  }
+  for (size_t k = 0; k < kLanes; ++k) numbers[k] = int32_t(hits[k < hits.size() ? k : 0]);
   const LanePicker<F> picker(numbers.load(), hits.front(), hits.back());
   const auto load = [&](const Lanes<float>& row) { return picker.pick<F>(row); };
   const auto load_number = [&](const Lanes<uint32_t>& row) { return picker.pick<U>(row); };
   const F t = load(found.t);
+  work.hits.object.store(load_number(found.object)), work.hits.part.store(load_number(found.part));
+  work.hits.primitive.store(load_number(found.primitive));
   work.hits.origin.store({load(rays.origin.x), load(rays.origin.y), load(rays.origin.z)});
   work.hits.direction.store({load(rays.direction.x), load(rays.direction.y), load(rays.direction.z)});
   work.hits.t.store(t), work.hits.u.store(load(found.u)), work.hits.v.store(load(found.v));
@@ -113,7 +111,7 @@ void push_branches(const std::array<Branch, 3>& branches, std::span<const uint32
     for (const Branch& branch : branches)
       if (branch.lanes >> k & 1) to.paths.set_media(next++, media);
   }
-  const LaneMerger<kLanes, 3> merger({branches[0].lanes, branches[1].lanes, branches[2].lanes});
+  const LaneMerger<kLanes, 3> merger(branches[0].lanes, branches[1].lanes, branches[2].lanes);
   const auto append = [&](auto& row, const auto& values_of) {
     using T = std::remove_cvref_t<decltype(row[0])>;
     merger.append<T>(row, {values_of(branches[0]), values_of(branches[1]), values_of(branches[2])});

@@ -13,23 +13,27 @@ namespace {
 
 using F = ShadingLanes;
 using D = DoubleOf<F>;
+using U = UintOf<F>;
+
+constexpr uint32_t kEveryLane = (1u << kWidthOf<F>)-1;
+
+const TriangleMesh& part_of(const Scene& scene, const HitIds& hit) {
+  const Geometry& geometry = scene.geometry;
+  return geometry.meshes[geometry.mesh_instances.mesh_of(hit.object)].parts[hit.part];
+}
+
+/// The lanes that are on the object of one of them.
+MaskOf<U> on_object_of(const LaneHits& hits, size_t lane) { return hits.object.load() == U(hits.object[lane]); }
+MaskOf<U> on_part_of(const LaneHits& hits, size_t lane) {
+  return on_object_of(hits, lane) && hits.part.load() == U(hits.part[lane]);
+}
 
 /// Where each lane's part has its arrays; of those that it lacks nothing is asked.
 class LaneParts {
  public:
   LaneParts(const Scene& scene, const LaneHits& hits) {
-    const Geometry& geometry = scene.geometry;
-    const auto part = [&](size_t k) {
-      return &geometry.meshes[geometry.mesh_instances.mesh_of(hits.ids[k].object)].parts[hits.ids[k].part];
-    };
-    const auto is_as_before = [&](size_t k) {
-      return hits.ids[k].object == hits.ids[k - 1].object && hits.ids[k].part == hits.ids[k - 1].part;
-    };
-    one_part_ = true, parts_[0] = part(0);
-    for (size_t k = 1; k < kWidthOf<F>; ++k) {
-      parts_[k] = is_as_before(k) ? parts_[k - 1] : part(k);
-      one_part_ = one_part_ && parts_[k] == parts_[0];
-    }
+    one_part_ = lane_bits(on_part_of(hits, 0)) == kEveryLane, parts_[0] = &part_of(scene, hits.ids(0));
+    for (size_t k = 1; k < kWidthOf<F>; ++k) parts_[k] = one_part_ ? parts_[0] : &part_of(scene, hits.ids(k));
   }
 
   /// An array in each lane.
@@ -57,10 +61,9 @@ class LaneParts {
     return rows([=](const TriangleMesh& part) -> const auto& { return part.*member; });
   }
 
-  [[nodiscard]] Vec3<F> polygon_normals(const LaneArray<IntOf<F>>& triangles) const {
+  [[nodiscard]] Vec3<F> polygon_normals(const LaneArray<U>& triangles) const {
     Vec3Array<F> n;
-    for (size_t k = 0; k < kWidthOf<F>; ++k)
-      n.set(k, parts_[k]->polygon_normals[polygon_of(*parts_[k], uint32_t(triangles[k]))]);
+    for (size_t k = 0; k < kWidthOf<F>; ++k) n.set(k, parts_[k]->polygon_normals[polygon_of(*parts_[k], triangles[k])]);
     return n.load();
   }
 
@@ -69,47 +72,139 @@ class LaneParts {
   bool one_part_;
 };
 
-template <class N>
-N component(const AddressOf<F>& element, size_t k) {
-  return load_at<N>(element + AddressOf<F>(4 * k));
-}
-Vec2<F> load_vec2(const AddressOf<F>& element) {
-  const AddressOf<F> both = load_words_at<F>(element);
-  const auto half = [](const AddressOf<F>& word) { return std::bit_cast<F>(convert<IntOf<F>>(word)); };
-  return {half(both), half(both >> 32)};
-}
-Vec3<F> load_vec3(const AddressOf<F>& element) {
-  const auto [x, y, z] = load_triples_at<F>(element);
-  return {x, y, z};
+/// The triangles of hits, each lane's for itself: what is asked of their corners is gathered.
+class LanesOfTriangles {
+ public:
+  LanesOfTriangles(const Scene& scene, const LaneHits& hits) : parts_(scene, hits), triangles_(hits.primitive) {
+    corner_ = load_triples_at<IntOf<F>>(parts_.rows(&TriangleMesh::triangles)[convert<IntOf<F>>(triangles_.load())]);
+  }
+
+  template <class Of>
+  [[nodiscard]] Vec2<F> vec2(const Of& of, size_t corner) const {
+    const AddressOf<F> both = load_words_at<F>(parts_.rows(of)[corner_[corner]]);
+    const auto half = [](const AddressOf<F>& word) { return std::bit_cast<F>(convert<IntOf<F>>(word)); };
+    return {half(both), half(both >> 32)};
+  }
+  template <class Of>
+  [[nodiscard]] Vec3<F> vec3(const Of& of, size_t corner) const {
+    const auto [x, y, z] = load_triples_at<F>(parts_.rows(of)[corner_[corner]]);
+    return {x, y, z};
+  }
+  template <class Of>
+  [[nodiscard]] F fourth(const Of& of, size_t corner) const {
+    return load_at<F>(parts_.rows(of)[corner_[corner]] + AddressOf<F>(3 * sizeof(float)));
+  }
+  [[nodiscard]] Vec3<F> polygon_normals() const { return parts_.polygon_normals(triangles_); }
+
+ private:
+  LaneParts parts_;
+  LaneArray<U> triangles_;
+  std::array<IntOf<F>, 3> corner_;
+};
+
+/// A few triangles that all hits are on: what is asked of their corners is read once for each.
+template <size_t count>
+class FewTriangles {
+ public:
+  /// `lanes`: the first on each triangle.
+  FewTriangles(const Scene& scene, const LaneHits& hits, const std::array<size_t, count>& lanes) {
+    for (size_t i = 0; i < count; ++i) {
+      const HitIds hit = hits.ids(lanes[i]);
+      parts_[i] = &part_of(scene, hit), triangles_[i] = hit.primitive;
+      on_[i] = convert_mask<F>(on_part_of(hits, lanes[i]) && hits.primitive.load() == U(hit.primitive));
+    }
+  }
+
+  template <class Of>
+  [[nodiscard]] Vec2<F> vec2(const Of& of, size_t corner) const {
+    return {number<0>(of, corner), number<1>(of, corner)};
+  }
+  template <class Of>
+  [[nodiscard]] Vec3<F> vec3(const Of& of, size_t corner) const {
+    return {number<0>(of, corner), number<1>(of, corner), number<2>(of, corner)};
+  }
+  template <class Of>
+  [[nodiscard]] F fourth(const Of& of, size_t corner) const {
+    return number<3>(of, corner);
+  }
+  [[nodiscard]] Vec3<F> polygon_normals() const {
+    const auto normal = [&](size_t i) { return parts_[i]->polygon_normals[polygon_of(*parts_[i], triangles_[i])]; };
+    Vec3<F> n = broadcast<F>(normal(0));
+    for (size_t i = 1; i < count; ++i) n = select(on_[i], broadcast<F>(normal(i)), n);
+    return n;
+  }
+
+ private:
+  template <size_t n, class Of>
+  [[nodiscard]] F number(const Of& of, size_t corner) const {
+    const auto of_triangle = [&](size_t i) {
+      const auto& element = of(*parts_[i])[parts_[i]->triangles[triangles_[i]][corner]];
+      return F(reinterpret_cast<const float*>(&element)[n]);
+    };
+    F all = of_triangle(0);
+    for (size_t i = 1; i < count; ++i) all = select(on_[i], of_triangle(i), all);
+    return all;
+  }
+
+  std::array<const TriangleMesh*, count> parts_;
+  std::array<uint32_t, count> triangles_;
+  std::array<MaskOf<F>, count> on_;
+};
+
+template <class Triangles>
+Corners<F> corners_of(const Triangles& triangles, const Attributes& has) {
+  Corners<F> c;
+  if (has.polygon_normals) c.n_polygon = triangles.polygon_normals();
+  const auto positions = [](const TriangleMesh& part) -> const auto& { return part.positions; };
+  const auto normals = [](const TriangleMesh& part) -> const auto& { return part.normals; };
+  const auto tangents = [](const TriangleMesh& part) -> const auto& { return part.tangents; };
+  const auto colors = [](const TriangleMesh& part) -> const auto& { return part.colors; };
+  for (size_t k = 0; k < 3; ++k) c.p_object[k] = triangles.vec3(positions, k);
+  for (size_t k = 0; k < 3 && has.normals; ++k) c.n_object[k] = triangles.vec3(normals, k);
+  for (size_t k = 0; k < 3 && has.tangents; ++k) c.t_object[k].store(triangles.vec3(tangents, k));
+  if (has.tangents) c.handedness = triangles.fourth(tangents, 0);
+  for (size_t i = 0; i < has.uv_sets; ++i) {
+    const auto uvs = [i](const TriangleMesh& part) -> const auto& { return part.uvs[i]; };
+    for (size_t k = 0; k < 3; ++k) c.uvs[i][k].store(triangles.vec2(uvs, k));
+  }
+  for (size_t k = 0; k < 3 && has.colors; ++k) {
+    const Vec3<F> rgb = triangles.vec3(colors, k);
+    c.colors[k].store({rgb.x, rgb.y, rgb.z}), c.alphas[k].store(triangles.fourth(colors, k));
+  }
+  return c;
 }
 
-Corners<F> lane_corners(const LaneParts& parts, const Attributes& has, const LaneArray<IntOf<F>>& triangles) {
-  Corners<F> c;
-  if (has.polygon_normals) c.n_polygon = parts.polygon_normals(triangles);
-  const auto corner = load_triples_at<IntOf<F>>(parts.rows(&TriangleMesh::triangles)[triangles.load()]);
-  const auto for_each_corner = [&](const LaneParts::Rows& rows, const auto& visit) {
-    for (size_t k = 0; k < 3; ++k) visit(k, rows[corner[k]]);
+constexpr size_t kFew = 4;  // triangles of a block, up to which they are read one by one
+
+/// The first lane on each triangle of a block, up to kFew; how many those are, or more than kFew.
+size_t find_triangles(const LaneHits& hits, std::array<size_t, kFew>& lanes) {
+  size_t count = 0;
+  for (uint32_t left = kEveryLane; left != 0; ++count) {
+    if (count == kFew) return kFew + 1;
+    const auto lane = size_t(std::countr_zero(left));
+    lanes[count] = lane;
+    left &= ~lane_bits(on_part_of(hits, lane) && hits.primitive.load() == U(hits.primitive[lane]));
+  }
+  return count;
+}
+
+Corners<F> lane_corners(const Scene& scene, const LaneHits& hits, const Attributes& has) {
+  std::array<size_t, kFew> lanes;
+  const auto few = [&]<size_t... i>(std::index_sequence<i...>) {
+    return corners_of(FewTriangles<sizeof...(i)>(scene, hits, {lanes[i]...}), has);
   };
-  using Address = AddressOf<F>;
-  for_each_corner(parts.rows(&TriangleMesh::positions),
-                  [&](size_t k, const Address& p) { c.p_object[k] = load_vec3(p); });
-  if (has.normals)
-    for_each_corner(parts.rows(&TriangleMesh::normals),
-                    [&](size_t k, const Address& n) { c.n_object[k] = load_vec3(n); });
-  if (has.tangents)
-    for_each_corner(parts.rows(&TriangleMesh::tangents), [&](size_t k, const Address& t) {
-      c.t_object[k].store(load_vec3(t));
-      if (k == 0) c.handedness = component<F>(t, 3);
-    });
-  for (size_t i = 0; i < has.uv_sets; ++i)
-    for_each_corner(parts.rows([&](const TriangleMesh& part) -> const auto& { return part.uvs[i]; }),
-                    [&](size_t k, const Address& uv) { c.uvs[i][k].store(load_vec2(uv)); });
-  if (has.colors)
-    for_each_corner(parts.rows(&TriangleMesh::colors), [&](size_t k, const Address& color) {
-      const Vec3<F> rgb = load_vec3(color);
-      c.colors[k].store({rgb.x, rgb.y, rgb.z}), c.alphas[k].store(component<F>(color, 3));
-    });
-  return c;
+  switch (find_triangles(hits, lanes)) {
+    case 1:
+      return few(std::make_index_sequence<1>());
+    case 2:
+      return few(std::make_index_sequence<2>());
+    case 3:
+      return few(std::make_index_sequence<3>());
+    case 4:
+      return few(std::make_index_sequence<4>());
+    default:
+      return corners_of(LanesOfTriangles(scene, hits), has);
+  }
 }
 
 Affine3<D> lane_maps(const std::array<const Affine3d*, kWidthOf<F>>& maps) {
@@ -138,11 +233,9 @@ struct LaneTriangles {
 double position_roundings(const Affine3d& m) { return m == Affine3d{} ? 4 : 16; }
 
 void set_maps(const MeshInstances& instances, const LaneHits& hits, LaneTriangles& all) {
-  const auto is_on = [&](size_t k, size_t other) { return hits.ids[k].object == hits.ids[other].object; };
-  size_t alike = 1;
-  while (alike < kWidthOf<F> && is_on(alike, 0)) ++alike;
-  if (alike == kWidthOf<F>) {
-    const Affine3d m = instances.world_from_object(hits.ids[0].object);
+  const auto is_on = [&](size_t k, size_t other) { return hits.object[k] == hits.object[other]; };
+  if (lane_bits(on_object_of(hits, 0)) == kEveryLane) {
+    const Affine3d m = instances.world_from_object(hits.object[0]);
     all.roundings = D(position_roundings(m));
     if (m != Affine3d{}) all.world_from_object = broadcast(m);
     return;
@@ -156,7 +249,7 @@ void set_maps(const MeshInstances& instances, const LaneHits& hits, LaneTriangle
       map_of[k] = map_of[k - 1], roundings[k] = roundings[k - 1];
       continue;
     }
-    maps[k] = instances.world_from_object(hits.ids[k].object);
+    maps[k] = instances.world_from_object(hits.object[k]);
     map_of[k] = &maps[k], roundings[k] = position_roundings(maps[k]);
     all_in_world = all_in_world && maps[k] == Affine3d{};
   }
@@ -166,9 +259,7 @@ void set_maps(const MeshInstances& instances, const LaneHits& hits, LaneTriangle
 
 LaneTriangles lane_triangles(const Scene& scene, const LaneHits& hits, const Attributes& has) {
   LaneTriangles all;
-  LaneArray<IntOf<F>> triangles;
-  for (size_t k = 0; k < kWidthOf<F>; ++k) triangles[k] = int32_t(hits.ids[k].primitive);
-  all.corners = lane_corners(LaneParts(scene, hits), has, triangles);
+  all.corners = lane_corners(scene, hits, has);
   set_maps(scene.geometry.mesh_instances, hits, all);
   return all;
 }
@@ -182,35 +273,37 @@ void set_mesh_points(const Scene& scene, const LaneHits& hits, const Attributes&
   place(triangles.corners, has, u, v, triangles.map(), triangles.roundings, s);
 }
 
-constexpr uint32_t kEveryLane = (1u << kWidthOf<F>)-1;
+using LaneShapes = std::array<const Shape*, kWidthOf<F>>;
 
-/// Sphere by sphere.
+/// One sphere, or sphere by sphere.
 struct LaneSpheres {
+  using Kind = Sphere;
   D radius;
 
-  template <class ShapeOf>
-  explicit LaneSpheres(const ShapeOf& shape_of)
-      : radius([&](auto k) { return std::get_if<Sphere>(&shape_of(k))->radius; }) {}
+  explicit LaneSpheres(const Sphere& sphere) : radius(sphere.radius) {}
+  explicit LaneSpheres(const LaneShapes& shapes)
+      : radius([&](auto k) { return std::get_if<Sphere>(shapes[k])->radius; }) {}
 
   [[nodiscard]] uint32_t doubtful(const LaneHits&) const { return 0; }
   [[nodiscard]] Vec3<D> projected(const Vec3<D>& p) const { return normalize(p) * radius; }
   [[nodiscard]] static Vec3<D> normal(const Vec3<D>& p) { return normalize(p); }
 };
 
-/// Quadric by quadric; caps and double planes are left to be done one by one.
+/// The same of quadrics; caps and double planes are left to be done one by one.
 struct LaneQuadrics {
+  using Kind = Quadric;
   std::array<D, 10> coefficients;
 
-  template <class ShapeOf>
-  explicit LaneQuadrics(const ShapeOf& shape_of) {
+  explicit LaneQuadrics(const Quadric& quadric) {
+    for (size_t c = 0; c < coefficients.size(); ++c) coefficients[c] = D(quadric.coefficients[c]);
+  }
+  explicit LaneQuadrics(const LaneShapes& shapes) {
     for (size_t c = 0; c < coefficients.size(); ++c)
-      coefficients[c] = D([&](auto k) { return std::get_if<Quadric>(&shape_of(k))->coefficients[c]; });
+      coefficients[c] = D([&](auto k) { return std::get_if<Quadric>(shapes[k])->coefficients[c]; });
   }
 
   [[nodiscard]] uint32_t doubtful(const LaneHits& hits) const {
-    uint32_t lanes = lane_bits(may_be_square(coefficients));
-    for (size_t k = 0; k < kWidthOf<F>; ++k) lanes |= uint32_t(int(hits.ids[k].part) != kWallFace) << k;
-    return lanes;
+    return lane_bits(may_be_square(coefficients)) | lane_bits(hits.part.load() != U(uint32_t(kWallFace)));
   }
   [[nodiscard]] Vec3<D> projected(const Vec3<D>& p) const { return project_to_wall(coefficients, p); }
   [[nodiscard]] Vec3<D> normal(const Vec3<D>& p) const {
@@ -224,13 +317,24 @@ Vec3<D> object_points(const LaneHits& hits, const Affine3<D>& object_from_world,
   return transform_vector(object_from_world, convert<D>(hits.origin.load()) - origin_world + along);
 }
 
+/// Where shapes stand: all lanes' at one place, or each at its own.
+struct LanePlaces {
+  Affine3<D> world_from_object, object_from_world;
+  D stretch;  // of volumes, below 0 where the map mirrors
+
+  explicit LanePlaces(const Affine3d& m)
+      : world_from_object(broadcast(m)), object_from_world(broadcast(inverse(m))), stretch(determinant(m)) {}
+  explicit LanePlaces(const Affine3<D>& m)
+      : world_from_object(m), object_from_world(inverse(m)), stretch(determinant(m)) {}
+};
+
 /// What `shape_point` does, for shapes of one kind, but for texture coordinates. Answers the lanes that are left.
-template <class LaneShapes, class ShapeOf>
-uint32_t set_points_on(const LaneHits& hits, const Affine3<D>& m, const ShapeOf& shape_of, BasicSurfacePoint<F>& s) {
-  const LaneShapes shapes(shape_of);
-  const Vec3<D> p = shapes.projected(object_points(hits, inverse(m), m.origin));
+template <class Shapes>
+uint32_t set_points_on(const Shapes& shapes, const LanePlaces& places, const LaneHits& hits, BasicSurfacePoint<F>& s) {
+  const Affine3<D>& m = places.world_from_object;
+  const Vec3<D> p = shapes.projected(object_points(hits, places.object_from_world, m.origin));
   s.p_world = transform_point(m, p);
-  s.ng_world = s.ns_world = convert<F>(normalize(outer_normal(m, determinant(m), shapes.normal(p))));
+  s.ng_world = s.ns_world = convert<F>(normalize(outer_normal(m, places.stretch, shapes.normal(p))));
   s.offset = shape_offset<F>(s.p_world);
   return shapes.doubtful(hits);
 }
@@ -249,26 +353,46 @@ void set_points_on(const Polygon& polygon, const Affine3d& m, const LaneHits& hi
   s.uvs[0] = {convert<F>(uv.x), convert<F>(uv.y)};
 }
 
+/// For one shape that all hits are on. Answers the lanes that are left.
+uint32_t set_points_on_one(const ShapeInstance& placed, const Shape& shape, bool has_textures, const LaneHits& hits,
+                           BasicSurfacePoint<F>& s) {
+  const Affine3d& m = placed.world_from_object;
+  if (const auto* polygon = std::get_if<Polygon>(&shape)) return set_points_on(*polygon, m, hits, s), 0;
+  if (has_textures) return kEveryLane;
+  if (const auto* sphere = std::get_if<Sphere>(&shape))
+    return set_points_on(LaneSpheres(*sphere), LanePlaces(m), hits, s);
+  if (const auto* quadric = std::get_if<Quadric>(&shape))
+    return set_points_on(LaneQuadrics(*quadric), LanePlaces(m), hits, s);
+  return kEveryLane;
+}
+/// For shapes that are all of one kind, else nothing. Answers the lanes that are left.
+template <class Shapes>
+uint32_t set_points_on_each(const std::array<const ShapeInstance*, kWidthOf<F>>& placed, const LaneShapes& shapes,
+                            const LaneHits& hits, BasicSurfacePoint<F>& s) {
+  std::array<const Affine3d*, kWidthOf<F>> maps;
+  for (size_t k = 0; k < kWidthOf<F>; ++k) {
+    if (!std::holds_alternative<typename Shapes::Kind>(*shapes[k])) return kEveryLane;
+    maps[k] = &placed[k]->world_from_object;
+  }
+  return set_points_on(Shapes(shapes), LanePlaces(lane_maps(maps)), hits, s);
+}
+
 /// Answers the lanes that are left.
 uint32_t set_points_in_lanes(const Scene& scene, const LaneHits& hits, bool has_textures, BasicSurfacePoint<F>& s) {
   const Geometry& geometry = scene.geometry;
   std::array<const ShapeInstance*, kWidthOf<F>> placed;
-  std::array<const Shape*, kWidthOf<F>> shapes;
-  bool alike = true, one = true;
-  for (size_t k = 0; k < kWidthOf<F>; ++k) {
-    placed[k] = &shape_instance(geometry, hits.ids[k].object), shapes[k] = &geometry.shapes[placed[k]->shape];
-    alike = alike && shapes[k]->index() == shapes[0]->index(), one = one && placed[k] == placed[0];
-  }
-  if (const auto* polygon = std::get_if<Polygon>(shapes[0]); one && polygon)
-    return set_points_on(*polygon, placed[0]->world_from_object, hits, s), 0;
-  const bool spheres = std::holds_alternative<Sphere>(*shapes[0]),
-             quadrics = std::holds_alternative<Quadric>(*shapes[0]);
-  if (has_textures || !alike || !(spheres || quadrics)) return kEveryLane;
-  const auto shape_of = [&](size_t k) -> const Shape& { return *shapes[k]; };
-  std::array<const Affine3d*, kWidthOf<F>> maps;
-  for (size_t k = 0; k < kWidthOf<F>; ++k) maps[k] = &placed[k]->world_from_object;
-  const Affine3<D> m = lane_maps(maps);
-  return spheres ? set_points_on<LaneSpheres>(hits, m, shape_of, s) : set_points_on<LaneQuadrics>(hits, m, shape_of, s);
+  LaneShapes shapes;
+  const auto find = [&](size_t k) {
+    placed[k] = &shape_instance(geometry, hits.object[k]), shapes[k] = &geometry.shapes[placed[k]->shape];
+  };
+  find(0);
+  if (lane_bits(on_object_of(hits, 0)) == kEveryLane)
+    return set_points_on_one(*placed[0], *shapes[0], has_textures, hits, s);
+  if (has_textures) return kEveryLane;
+  for (size_t k = 1; k < kWidthOf<F>; ++k) find(k);
+  if (std::holds_alternative<Sphere>(*shapes[0])) return set_points_on_each<LaneSpheres>(placed, shapes, hits, s);
+  if (std::holds_alternative<Quadric>(*shapes[0])) return set_points_on_each<LaneQuadrics>(placed, shapes, hits, s);
+  return kEveryLane;
 }
 
 void set_points_one_by_one(const Scene& scene, const LaneHits& hits, bool has_textures, uint32_t lanes,
@@ -282,7 +406,7 @@ void set_points_one_by_one(const Scene& scene, const LaneHits& hits, bool has_te
   for (; lanes; lanes &= lanes - 1) {
     const auto k = size_t(std::countr_zero(lanes));
     const Rayf ray{hits.origin.get(k), hits.direction.get(k)};
-    const SurfacePoint one = shape_point(scene, ray, hits.ids[k], hits.t[k], 0, has_textures);
+    const SurfacePoint one = shape_point(scene, ray, hits.ids(k), hits.t[k], 0, has_textures);
     p.set(k, one.p_world), ng.set(k, one.ng_world), ns.set(k, one.ns_world), tangent.set(k, one.tangent_world);
     offset[k] = one.offset, bitangent_sign[k] = one.bitangent_sign;
     u[k] = one.uvs[0].x, v[k] = one.uvs[0].y;
@@ -304,7 +428,7 @@ void set_shape_points(const Scene& scene, const LaneHits& hits, bool has_texture
 BasicSurfacePoint<F> surface_points(const Scene& scene, const LaneHits& hits, const Attributes& has,
                                     bool has_textures) noexcept {
   BasicSurfacePoint<F> s;
-  if (is_shape(scene.geometry, hits.ids[0].object))
+  if (is_shape(scene.geometry, hits.object[0]))
     set_shape_points(scene, hits, has_textures, s);
   else
     set_mesh_points(scene, hits, has, has_textures, s);
@@ -313,16 +437,16 @@ BasicSurfacePoint<F> surface_points(const Scene& scene, const LaneHits& hits, co
 
 F mean_curvature(const Scene& scene, const LaneHits& hits, const Attributes& has, const BasicSurfacePoint<F>& points,
                  const F& width) noexcept {
-  if (is_shape(scene.geometry, hits.ids[0].object)) {
+  if (is_shape(scene.geometry, hits.object[0])) {
     Vec3Array<D> p;
     Vec3Array<F> ng;
     LaneArray<F> widths, curvature;
     p.store(points.p_world), ng.store(points.ng_world), widths.store(width);
     for (size_t k = 0; k < kWidthOf<F>;) {
-      const uint32_t object = hits.ids[k].object;
+      const uint32_t object = hits.object[k];
       const ShapeCurvature on_shape(scene, object, 0);
-      for (; k < kWidthOf<F> && hits.ids[k].object == object; ++k)
-        curvature[k] = on_shape.at(int(hits.ids[k].part), p.get(k), ng.get(k), widths[k]);
+      for (; k < kWidthOf<F> && hits.object[k] == object; ++k)
+        curvature[k] = on_shape.at(int(hits.part[k]), p.get(k), ng.get(k), widths[k]);
     }
     return finite_or_0(curvature.load());
   }

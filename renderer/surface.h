@@ -51,9 +51,11 @@ struct Attributes {
 
 /// Hits side by side: all on shapes, or all on parts of meshes with the same attributes. Nothing moves.
 struct LaneHits {
-  std::array<HitIds, kWidthOf<ShadingLanes>> ids;
+  LaneArray<UintOf<ShadingLanes>> object, part, primitive;
   Vec3Array<ShadingLanes> origin, direction;  // of the rays, in world space
   LaneArray<ShadingLanes> t, u, v;
+
+  [[nodiscard]] HitIds ids(size_t k) const { return {object[k], part[k], primitive[k]}; }
 };
 
 /// `surface_point` of each, to the bit, as far as a material asks: `has` may lack what the parts have. Without

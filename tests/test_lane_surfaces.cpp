@@ -46,7 +46,7 @@ LaneHits random_hits(Uniform& uniform, const Scene& scene, const std::vector<uin
     const uint32_t object = objects[uniform.bits() % objects.size()];
     uint32_t part = 0, primitive = 0;
     if (!is_shape(scene.geometry, object)) primitive = uniform.bits() % kTriangles;
-    hits.ids[k] = {object, part, primitive};
+    hits.object[k] = object, hits.part[k] = part, hits.primitive[k] = primitive;
     hits.origin.set(k, Vec3f(vector(uniform, 20))), hits.direction.set(k, uniform.direction());
     hits.t[k] = uniform(0, 20);
     hits.u[k] = uniform(0, 0.5), hits.v[k] = uniform(0, 0.5);
@@ -64,7 +64,7 @@ testing::AssertionResult are_as_alone(const Scene& scene, const LaneHits& hits, 
   const Values<float> sign(lanes.bitangent_sign), u(lanes.uvs[0].x), v(lanes.uvs[0].y), rate(lanes.uv_per_metre[0]);
   for (size_t k = 0; k < kLanes; ++k) {
     const Rayf ray{hits.origin.get(k), hits.direction.get(k)};
-    const SurfacePoint one = surface_point(scene, ray, hits.ids[k], hits.t[k], hits.u[k], hits.v[k]);
+    const SurfacePoint one = surface_point(scene, ray, hits.ids(k), hits.t[k], hits.u[k], hits.v[k]);
     if (!(p.are(k, one.p_world) && offset.are(k, one.offset) && ng.are(k, one.ng_world) && ns.are(k, one.ns_world)))
       return testing::AssertionFailure() << "lane " << k << ": place or normals";
     if (!has_textures) continue;
