@@ -219,8 +219,9 @@ struct Occluder {
     embree::load_rays(wave, first, width, packet);
     for (RTCScene scene : built.scenes)  // what is blocked in the first is not looked at in the second
       if (scene) embree::occluded<width>(valid, scene, query, packet);
-    for (int i = 0; i < rays; ++i)
-      if (packet.tfar[i] < 0) visible[first + size_t(i)] = Rgb(0.0f);
+    const FloatLanes<width> t_max(packet.tfar, std::experimental::element_aligned);
+    const uint32_t blocked = lane_bits(t_max < 0) & ((1u << rays) - 1);
+    for_each_bit(blocked, [&](unsigned i) { visible[first + i] = Rgb(0.0f); });
   }
 };
 
