@@ -87,6 +87,10 @@ void visit_outline(const Geometry& geometry, const std::function<void(const Vec3
 [[nodiscard]] inline const ShapeInstance& shape_instance(const Geometry& geometry, uint32_t object) {
   return geometry.shape_instances[object - geometry.mesh_instances.size()];
 }
+/// Of an object that is a mesh's.
+[[nodiscard]] inline const TriangleMesh& part_of(const Geometry& geometry, uint32_t object, uint32_t part) {
+  return geometry.meshes[geometry.mesh_instances.mesh_of(object)].parts[part];
+}
 [[nodiscard]] inline uint32_t node_of(const Geometry& geometry, uint32_t object) {
   return is_shape(geometry, object) ? shape_instance(geometry, object).node : geometry.mesh_instances.node_of(object);
 }

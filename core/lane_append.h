@@ -38,8 +38,8 @@ class LaneMerger {
  public:
   /// The bits of each list: one by one, as a copy of an array that was just filled waits for its memory.
   template <class... Bits>
-    requires(sizeof...(Bits) == lists)
   explicit LaneMerger(Bits... lanes) : lanes_{lanes...} {
+    static_assert(sizeof...(Bits) == lists);
     for (size_t i = 0; i < lists; ++i) {
       size_ += size_t(std::popcount(lanes_[i]));
       if (lanes_[i] != 0) some_[count_++] = i;

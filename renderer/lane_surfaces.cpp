@@ -1,6 +1,8 @@
 // Points on surfaces for hits side by side (renderer/surface.h).
+#include <array>
 #include <bit>
 #include <optional>
+#include <utility>
 
 #include "accel/line_map.h"
 #include "accel/shapes/polygon_plane.h"
@@ -17,23 +19,25 @@ using U = UintOf<F>;
 
 constexpr uint32_t kEveryLane = (1u << kWidthOf<F>)-1;
 
-const TriangleMesh& part_of(const Scene& scene, const HitIds& hit) {
-  const Geometry& geometry = scene.geometry;
-  return geometry.meshes[geometry.mesh_instances.mesh_of(hit.object)].parts[hit.part];
+const TriangleMesh& part_of(const Scene& scene, const LaneHits& hits, size_t lane) {
+  return part_of(scene.geometry, hits.object[lane], hits.part[lane]);
 }
 
-/// The lanes that are on the object of one of them.
+/// The lanes that are on the object, part or triangle of one of them.
 MaskOf<U> on_object_of(const LaneHits& hits, size_t lane) { return hits.object.load() == U(hits.object[lane]); }
 MaskOf<U> on_part_of(const LaneHits& hits, size_t lane) {
   return on_object_of(hits, lane) && hits.part.load() == U(hits.part[lane]);
+}
+MaskOf<U> on_triangle_of(const LaneHits& hits, size_t lane) {
+  return on_part_of(hits, lane) && hits.primitive.load() == U(hits.primitive[lane]);
 }
 
 /// Where each lane's part has its arrays; of those that it lacks nothing is asked.
 class LaneParts {
  public:
   LaneParts(const Scene& scene, const LaneHits& hits) {
-    one_part_ = lane_bits(on_part_of(hits, 0)) == kEveryLane, parts_[0] = &part_of(scene, hits.ids(0));
-    for (size_t k = 1; k < kWidthOf<F>; ++k) parts_[k] = one_part_ ? parts_[0] : &part_of(scene, hits.ids(k));
+    one_part_ = lane_bits(on_part_of(hits, 0)) == kEveryLane, parts_[0] = &part_of(scene, hits, 0);
+    for (size_t k = 1; k < kWidthOf<F>; ++k) parts_[k] = one_part_ ? parts_[0] : &part_of(scene, hits, k);
   }
 
   /// An array in each lane.
@@ -109,9 +113,8 @@ class FewTriangles {
   /// `lanes`: the first on each triangle.
   FewTriangles(const Scene& scene, const LaneHits& hits, const std::array<size_t, count>& lanes) {
     for (size_t i = 0; i < count; ++i) {
-      const HitIds hit = hits.ids(lanes[i]);
-      parts_[i] = &part_of(scene, hit), triangles_[i] = hit.primitive;
-      on_[i] = convert_mask<F>(on_part_of(hits, lanes[i]) && hits.primitive.load() == U(hit.primitive));
+      parts_[i] = &part_of(scene, hits, lanes[i]), triangles_[i] = hits.primitive[lanes[i]];
+      on_[i] = convert_mask<F>(on_triangle_of(hits, lanes[i]));
     }
   }
 
@@ -183,7 +186,7 @@ size_t find_triangles(const LaneHits& hits, std::array<size_t, kFew>& lanes) {
     if (count == kFew) return kFew + 1;
     const auto lane = size_t(std::countr_zero(left));
     lanes[count] = lane;
-    left &= ~lane_bits(on_part_of(hits, lane) && hits.primitive.load() == U(hits.primitive[lane]));
+    left &= ~lane_bits(on_triangle_of(hits, lane));
   }
   return count;
 }

@@ -42,8 +42,7 @@ std::optional<Rgb> light_passing_shape(const void* data, uint32_t object) noexce
 }
 
 std::optional<Rgb> light_passing_part(const Scene& scene, const Crossing& crossing) noexcept {
-  const Geometry& geometry = scene.geometry;
-  const TriangleMesh& part = geometry.meshes[geometry.mesh_instances.mesh_of(crossing.object)].parts[crossing.part];
+  const TriangleMesh& part = part_of(scene.geometry, crossing.object, crossing.part);
   return light_passing_anywhere(scene, part.material, !part.colors.empty());
 }
 

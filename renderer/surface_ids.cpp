@@ -13,7 +13,7 @@ void SurfaceIdReader::look_up(uint32_t object, uint32_t part) noexcept {
     material_ = of_file(shape_instance(geometry, object).material);
     return;
   }
-  const TriangleMesh& mesh_part = geometry.meshes[geometry.mesh_instances.mesh_of(object)].parts[part];
+  const TriangleMesh& mesh_part = part_of(geometry, object, part);
   material_ = of_file(mesh_part.material), first_primitive_ = mesh_part.first_primitive;
   if (!mesh_part.polygon_of_triangle.empty()) polygon_of_triangle_ = mesh_part.polygon_of_triangle.data();
 }

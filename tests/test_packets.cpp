@@ -58,6 +58,13 @@ TEST(Packets, AnswerAsTheirRaysDoAlone) {
   }
 }
 
+Geometry placed(const TriangleMesh& part) {
+  Geometry geometry;
+  geometry.meshes.push_back({"", {part}});
+  geometry.mesh_instances.push_back({0, 0, {}});
+  return geometry;
+}
+
 /// Many triangles of all orientations.
 Geometry random_triangles(Uniform& uniform, uint32_t count) {
   TriangleMesh part;
@@ -66,10 +73,7 @@ Geometry random_triangles(Uniform& uniform, uint32_t count) {
     for (int k = 0; k < 3; ++k) part.positions.push_back(middle + uniform.direction() * 0.15f);
     part.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
-  Geometry geometry;
-  geometry.meshes.push_back({"", {part}});
-  geometry.mesh_instances.push_back({0, 0, {}});
-  return geometry;
+  return placed(part);
 }
 
 TEST(Packets, MeetTheTrianglesThatTheirRaysMeetAlone) {
@@ -104,9 +108,7 @@ TEST(Packets, APaneDimsEachOfTheirRaysOnce) {
       part.positions.push_back({corner.x, corner.y, float(i)});
     part.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
-  Geometry geometry;
-  geometry.meshes.push_back({"", {part}});
-  geometry.mesh_instances.push_back({0, 0, {}});
+  const Geometry geometry = placed(part);
   const Opacity opacity[] = {Opacity::transparent};
   SurfaceFilter filter{opacity};
   filter.transmittance = [](const void*, const Crossing&) noexcept { return Rgb(0.5f, 0.75f, 1.0f); };

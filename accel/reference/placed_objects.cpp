@@ -44,7 +44,7 @@ Bounds3d PlacedObjects::bounds(uint32_t object) const {
 
 uint32_t PlacedObjects::material_of(const Crossing& crossing) const {
   if (is_shape(geometry_, crossing.object)) return shape_instance(geometry_, crossing.object).material;
-  return geometry_.meshes[geometry_.mesh_instances.mesh_of(crossing.object)].parts[crossing.part].material;
+  return part_of(geometry_, crossing.object, crossing.part).material;
 }
 
 Opacity PlacedObjects::opacity(uint32_t material) const {
