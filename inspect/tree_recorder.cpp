@@ -77,7 +77,7 @@ void TreeRecorder::uncover(float share) {
   if (ray_ != kNone) rays_[ray_].uncovered += share;
 }
 
-void TreeRecorder::spawn(const Rayf& ray, const Path& path, SpawnOutcome outcome) {
+void TreeRecorder::spawn(const Rayf& ray, const Path& path, Bounce bounce, SpawnOutcome outcome) {
   uint32_t index = kNone;
   if (ray_ != kNone) {
     index = uint32_t(rays_.size());
@@ -86,7 +86,7 @@ void TreeRecorder::spawn(const Rayf& ray, const Path& path, SpawnOutcome outcome
     spawned.total = path.kind == RayKind::mirror && rays_[ray_].interface && rays_[ray_].interface->total;
     rays_.push_back(std::move(spawned));
   }
-  if (outcome == SpawnOutcome::traced) followed_.spawn(index);
+  if (outcome == SpawnOutcome::traced) followed_.spawn(bounce, index);
 }
 
 void TreeRecorder::ask(const LightQuery& query) {

@@ -24,7 +24,7 @@ class TreeRecorder final : public TraceObserver {
   void part(const Interface& interface) override;
   void add(LightTerm term, const Rgb& light) override;
   void uncover(float share) override;
-  void spawn(const Rayf& ray, const Path& path, SpawnOutcome outcome) override;
+  void spawn(const Rayf& ray, const Path& path, Bounce bounce, SpawnOutcome outcome) override;
   void ask(const LightQuery& query) override;
   void answer(size_t i, const Rgb& visible, const Rgb& light) override;
   void answered() override { asked_.clear(); }

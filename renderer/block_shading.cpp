@@ -59,7 +59,7 @@ void push_shadows(const LaneRays& rays, uint32_t lanes, const LaneWork& work, Sh
   append_lanes(wave.pixel, lanes, work.pixel.values);
 }
 
-/// Rays of one kind that leave a block: those that are traced, and what is not the same for all kinds.
+/// Rays that leave a block in one way: those that are traced, and what is not the same for all ways.
 struct Branch {
   const LaneRays& rays;
   uint32_t lanes;
@@ -77,16 +77,14 @@ struct Branch {
   }
 };
 
-/// Straight on, a view stays one; what passes a texel that is not there at all gets no deeper.
+/// What passes a texel that is not there at all gets no deeper.
 Branch straight_branch(const LaneLight& light, const LaneWork& work, std::span<const uint32_t> hits,
                        const PathRows& paths, uint32_t present, const RenderOptions& options) {
   U depth = work.depth.load();
   if (light.straight.lanes != 0) depth = depth + select(convert_mask<U>(light.alpha.load() > F(0)), U(1), U(0));
   Branch branch(light.straight, present, depth, options);
-  for (size_t k = 0; k < hits.size() && branch.lanes != 0; ++k) {
-    const RayKind kind = paths.kind[hits[k]];
-    branch.kind[k] = is_view(kind) ? RayKind::straight : kind;
-  }
+  for (size_t k = 0; k < hits.size() && branch.lanes != 0; ++k)
+    branch.kind[k] = kind_after(paths.kind[hits[k]], Bounce::straight);
   branch.roughness = work.roughness;
   return branch;
 }
@@ -99,39 +97,23 @@ Branch bounced_branch(const LaneRays& rays, RayKind kind, const LaneLight& light
   return branch;
 }
 
-/// The rays of a block, in the order in which they would be spawned one by one: hit by hit, and of each as listed.
-void push_branches(const std::array<Branch, 3>& branches, std::span<const uint32_t> hits, const LaneWork& work,
-                   const PathRows& from, PathWave& to) {
-  const uint32_t any = branches[0].lanes | branches[1].lanes | branches[2].lanes;
-  if (any == 0) return;
+void push_branch(const Branch& branch, std::span<const uint32_t> hits, const LaneWork& work, const PathRows& from,
+                 PathWave& to) {
+  if (branch.lanes == 0) return;
   size_t next = to.size();
-  for (uint32_t lanes = from.media.size() > 0 ? any : 0; lanes; lanes &= lanes - 1) {
-    const auto k = size_t(std::countr_zero(lanes));
-    const Media media = from.media_of(hits[k]);
-    for (const Branch& branch : branches)
-      if (branch.lanes >> k & 1) to.paths.set_media(next++, media);
-  }
-  const LaneMerger<kLanes, 3> merger(branches[0].lanes, branches[1].lanes, branches[2].lanes);
-  const auto append = [&](auto& row, const auto& values_of) {
-    using T = std::remove_cvref_t<decltype(row[0])>;
-    merger.append<T>(row, {values_of(branches[0]), values_of(branches[1]), values_of(branches[2])});
-  };
-  append(to.rays.origin.x, [](const Branch& b) { return &b.rays.origin.x.values; });
-  append(to.rays.origin.y, [](const Branch& b) { return &b.rays.origin.y.values; });
-  append(to.rays.origin.z, [](const Branch& b) { return &b.rays.origin.z.values; });
-  append(to.rays.direction.x, [](const Branch& b) { return &b.rays.direction.x.values; });
-  append(to.rays.direction.y, [](const Branch& b) { return &b.rays.direction.y.values; });
-  append(to.rays.direction.z, [](const Branch& b) { return &b.rays.direction.z.values; });
-  merger.append_same(to.rays.t_min, Rayf{}.t_min), merger.append_same(to.rays.t_max, Rayf{}.t_max);
-  append(to.paths.red, [](const Branch& b) { return &b.rays.weight.r.values; });
-  append(to.paths.green, [](const Branch& b) { return &b.rays.weight.g.values; });
-  append(to.paths.blue, [](const Branch& b) { return &b.rays.weight.b.values; });
-  append(to.paths.kind, [](const Branch& b) { return &b.kind; });
-  append(to.paths.cone_spread, [](const Branch& b) { return &b.rays.cone_spread.values; });
-  append(to.paths.cone_width, [&](const Branch&) { return &work.cone_width.values; });
-  append(to.paths.pixel, [&](const Branch&) { return &work.pixel.values; });
-  append(to.paths.depth, [](const Branch& b) { return &b.depth.values; });
-  append(to.paths.roughness, [](const Branch& b) { return &b.roughness.values; });
+  for (uint32_t lanes = from.media.size() > 0 ? branch.lanes : 0; lanes; lanes &= lanes - 1)
+    to.paths.set_media(next++, from.media_of(hits[size_t(std::countr_zero(lanes))]));
+  const LaneRays& rays = branch.rays;
+  const auto count = size_t(std::popcount(branch.lanes));
+  const auto append = [&](auto& row, const auto& values) { append_lanes(row, branch.lanes, values.values); };
+  append(to.rays.origin.x, rays.origin.x), append(to.rays.origin.y, rays.origin.y);
+  append(to.rays.origin.z, rays.origin.z), append(to.rays.direction.x, rays.direction.x);
+  append(to.rays.direction.y, rays.direction.y), append(to.rays.direction.z, rays.direction.z);
+  append_same<kLanes>(to.rays.t_min, count, Rayf{}.t_min), append_same<kLanes>(to.rays.t_max, count, Rayf{}.t_max);
+  append(to.paths.red, rays.weight.r), append(to.paths.green, rays.weight.g), append(to.paths.blue, rays.weight.b);
+  append_lanes(to.paths.kind, branch.lanes, branch.kind), append(to.paths.depth, branch.depth);
+  append(to.paths.cone_spread, rays.cone_spread), append(to.paths.cone_width, work.cone_width);
+  append(to.paths.pixel, work.pixel), append(to.paths.roughness, branch.roughness);
 }
 
 }  // namespace
@@ -152,10 +134,12 @@ void shade_block(const Scene& scene, const RenderOptions& options, const Shading
   }
   if (((light.straight.lanes | light.mirror.lanes | light.refracted.lanes) & present) == 0) return;
   const PathRows& from = arena.current.paths;
-  push_branches({straight_branch(light, work, hits, from, present, options),
-                 bounced_branch(light.mirror, RayKind::mirror, light, work, present, options),
-                 bounced_branch(light.refracted, RayKind::refracted, light, work, present, options)},
-                hits, work, from, arena.pending);
+  const auto push = [&](const Branch& branch, Bounce bounce) {
+    push_branch(branch, hits, work, from, arena.spawned[bounce]);
+  };
+  push(straight_branch(light, work, hits, from, present, options), Bounce::straight);
+  push(bounced_branch(light.mirror, RayKind::mirror, light, work, present, options), Bounce::mirror);
+  push(bounced_branch(light.refracted, RayKind::refracted, light, work, present, options), Bounce::refracted);
 }
 
 }  // namespace alhazen

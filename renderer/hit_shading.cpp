@@ -81,16 +81,16 @@ class HitShader {
           cross_boundary(path.media, surface.material, dot(surface.ng_world, ray.direction) < 0, scene_.materials);
       if (!s.boundary.seen) {
         tell([&](TraceObserver& observer) { observer.pass_unnoticed(); });
-        return spawn_as(s, ray.direction,
+        return spawn_as(s, ray.direction, Bounce::straight,
                         {path.pixel, arriving, path.depth, path.kind, s.boundary.after, cone, path.roughness});
       }
     }
     if (alpha < 1) {
       // A texel that is not there at all costs no depth: foliage is made of many of them.
       const uint32_t depth = alpha > 0 ? path.depth + 1 : path.depth;
-      spawn_as(s, ray.direction,
-               {path.pixel, arriving * (1 - alpha), depth, is_view(path.kind) ? RayKind::straight : path.kind,
-                path.media, cone, path.roughness});
+      spawn_as(s, ray.direction, Bounce::straight,
+               {path.pixel, arriving * (1 - alpha), depth, kind_after(path.kind, Bounce::straight), path.media, cone,
+                path.roughness});
     }
     if (alpha == 0) return;
     const Rgb emitted = s.weight * emission(material, table_, inputs);
@@ -138,10 +138,9 @@ class HitShader {
     const float f = bsdf.fresnel ? fresnel_dielectric(smaller(1.0f, dot(s.n, s.b)), eta) : 0.0f;
     if (transmits) tell([&](TraceObserver& observer) { observer.part(phong_interface(s, bsdf, f, !passes)); });
     const PhongRays rays = ray_weights(bsdf, f, passes);
-    spawn(s, reflect(s.d, s.n), s.weight * rays.mirrored, RayKind::mirror, s.path.media);
+    spawn(s, reflect(s.d, s.n), s.weight * rays.mirrored, Bounce::mirror, s.path.media);
     if (passes)
-      spawn(s, refracted, s.weight * rays.refracted, RayKind::refracted, body ? s.boundary.after : s.path.media, 0,
-            eta);
+      spawn(s, refracted, s.weight * rays.refracted, Bounce::refracted, body ? s.boundary.after : s.path.media, 0, eta);
   }
 
   static Interface phong_interface(const Shading& s, const PhongBsdf& bsdf, float fresnel, bool total) {
@@ -161,7 +160,7 @@ class HitShader {
     add(s.path, LightTerm::ambient, s.weight * ambient);
     add_lights(s, bsdf,
                [&](const MeasuredBsdf& of, const Vec3f& to_light) { return reflected_light(of, s.n, to_light, s.b); });
-    spawn(s, above_surface(s.surface.ng_world, s.b, mirrored), s.weight * albedo.highlight * share, RayKind::mirror,
+    spawn(s, above_surface(s.surface.ng_world, s.b, mirrored), s.weight * albedo.highlight * share, Bounce::mirror,
           s.path.media, roughness);
   }
 
@@ -189,9 +188,9 @@ class HitShader {
     });
     const Rgb through = (Rgb(1.0f) - passing.fresnel) * bsdf.base_color;
     spawn(s, above_surface(s.surface.ng_world, s.b, reflect(s.d, frames.coat_n)), s.weight * (coat * coat_share),
-          RayKind::mirror, s.path.media, bsdf.clearcoat_roughness);
+          Bounce::mirror, s.path.media, bsdf.clearcoat_roughness);
     spawn(s, above_surface(s.surface.ng_world, s.b, reflect(s.d, s.n)), s.weight * passing.fresnel * (left * share),
-          RayKind::mirror, s.path.media, bsdf.roughness);
+          Bounce::mirror, s.path.media, bsdf.roughness);
     spawn_transmitted(s, through * (left * bsdf.transmission * (1 - bsdf.metallic)), passing, bsdf.roughness);
   }
 
@@ -247,14 +246,14 @@ class HitShader {
     const Rgb &before = s.boundary.ior_before, &after = s.boundary.ior_after;
     if (before.r == before.b && after.r == after.b) {
       if (passing.passes)
-        spawn(s, passing.direction, s.weight * share, RayKind::refracted, passing.media, roughness, passing.eta);
+        spawn(s, passing.direction, s.weight * share, Bounce::refracted, passing.media, roughness, passing.eta);
       return;
     }
     // A ray for each of red, green and blue; the colours of a ray that was split before go on alone.
     const auto spawn_color = [&](float eta, const Rgb& color) {
       Vec3f refracted;
       if (refract(s.d, s.n, eta, refracted))
-        spawn(s, refracted, s.weight * share * color, RayKind::refracted, passing.media, roughness, eta);
+        spawn(s, refracted, s.weight * share * color, Bounce::refracted, passing.media, roughness, eta);
     };
     spawn_color(before.r / after.r, {1, 0, 0});
     spawn_color(before.g / after.g, {0, 1, 0});
@@ -262,11 +261,11 @@ class HitShader {
   }
 
   /// `eta`: the index before the surface to that beyond it, of a ray that is refracted.
-  void spawn(const Shading& s, const Vec3f& direction, const Rgb& weight, RayKind kind, const Media& media,
+  void spawn(const Shading& s, const Vec3f& direction, const Rgb& weight, Bounce bounce, const Media& media,
              float roughness = 0, float eta = 1) {
     if (!(max_component(weight) > 0)) return;
     const Cone cone = cone_of(s.path, s.ids, s.surface, s.cone, s.d, s.n, normalize(direction), eta);
-    spawn_as(s, direction, next_path(s.path, weight, kind, media, cone, roughness));
+    spawn_as(s, direction, bounce, next_path(s.path, weight, bounce, media, cone, roughness));
   }
 
   /// Cones serve textures alone, so that a scene without any does not pay for the curvature.
@@ -279,9 +278,15 @@ class HitShader {
   }
 
   /// One deeper than `path`, from a surface of that roughness.
-  static Path next_path(const Path& path, const Rgb& weight, RayKind kind, const Media& media, const Cone& cone,
+  static Path next_path(const Path& path, const Rgb& weight, Bounce bounce, const Media& media, const Cone& cone,
                         float roughness) {
-    return {path.pixel, weight, path.depth + 1, kind, media, cone, blurred_by(path.roughness, roughness)};
+    return {path.pixel,
+            weight,
+            path.depth + 1,
+            kind_after(path.kind, bounce),
+            media,
+            cone,
+            blurred_by(path.roughness, roughness)};
   }
 
   [[nodiscard]] SpawnOutcome outcome_of(const Path& path) const {
@@ -290,17 +295,11 @@ class HitShader {
     return largest >= options_.min_weight && largest > 0 ? SpawnOutcome::traced : SpawnOutcome::weight_limit;
   }
 
-  void spawn_as(const Shading& s, const Vec3f& direction, const Path& path) {
+  void spawn_as(const Shading& s, const Vec3f& direction, Bounce bounce, const Path& path) {
     const SpawnOutcome outcome = outcome_of(path);
-    if (outcome == SpawnOutcome::traced)
-      arena_.pending.push({spawn_origin(s.surface, direction), normalize(direction)}, path);
-    tell_spawn(s, direction, path, outcome);
-  }
-
-  void tell_spawn(const Shading& s, const Vec3f& direction, const Path& path, SpawnOutcome outcome) {
-    tell([&](TraceObserver& observer) {
-      observer.spawn({spawn_origin(s.surface, direction), normalize(direction)}, path, outcome);
-    });
+    const auto ray = [&] { return Rayf{spawn_origin(s.surface, direction), normalize(direction)}; };
+    if (outcome == SpawnOutcome::traced) arena_.spawned[bounce].push(ray(), path);
+    tell([&](TraceObserver& observer) { observer.spawn(ray(), path, bounce, outcome); });
   }
 
   /// Queues one shadow ray for each light whose reflected light is not 0; `reflected(bsdf, to_light)` says how much.

@@ -239,12 +239,12 @@ void LayerRecorder::add(LightTerm term, const Rgb& light) {
   add_to_branch(looked_at_, light, kSums[size_t(term)]);
 }
 
-void LayerRecorder::spawn(const Rayf&, const Path& path, SpawnOutcome outcome) {
+void LayerRecorder::spawn(const Rayf&, const Path&, Bounce bounce, SpawnOutcome outcome) {
   if (outcome != SpawnOutcome::traced) return;
   Followed next{looked_at_.pixel, looked_at_.branch, false};
-  if (next.branch == Branch::view && path.kind == RayKind::mirror) next.branch = Branch::reflected;
-  if (next.branch == Branch::view && path.kind == RayKind::refracted) next.branch = Branch::refracted;
-  followed_.spawn(next);
+  if (next.branch == Branch::view && bounce == Bounce::mirror) next.branch = Branch::reflected;
+  if (next.branch == Branch::view && bounce == Bounce::refracted) next.branch = Branch::refracted;
+  followed_.spawn(bounce, next);
 }
 
 void LayerRecorder::ask(const LightQuery& query) {

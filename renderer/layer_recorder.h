@@ -37,7 +37,7 @@ class LayerRecorder final : public TraceObserver {
   void part(const Interface&) override {}
   void add(LightTerm term, const Rgb& light) override;
   void uncover(float) override {}
-  void spawn(const Rayf& ray, const Path& path, SpawnOutcome outcome) override;
+  void spawn(const Rayf& ray, const Path& path, Bounce bounce, SpawnOutcome outcome) override;
   void ask(const LightQuery& query) override;
   void answer(size_t i, const Rgb& visible, const Rgb& light) override;
   void answered() override;

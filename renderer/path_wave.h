@@ -1,6 +1,9 @@
 // Rays on their way to pixels, as rows: what Whitted's waves are made of.
 #pragma once
 
+#include <array>
+#include <utility>
+
 #include "accel/wave.h"
 #include "renderer/camera_ray.h"
 #include "renderer/media.h"
@@ -11,6 +14,23 @@ namespace alhazen {
 enum class RayKind : uint32_t { camera, mirror, refracted, straight };
 
 [[nodiscard]] inline bool is_view(RayKind kind) { return kind == RayKind::camera || kind == RayKind::straight; }
+
+/// How a path goes on from a hit.
+enum class Bounce : uint8_t { straight, mirror, refracted };
+inline constexpr size_t kBounces = 3;
+
+/// What the ray that goes on is for. Straight on, a view stays one.
+[[nodiscard]] inline RayKind kind_after(RayKind before, Bounce bounce) {
+  switch (bounce) {
+    case Bounce::straight:
+      return is_view(before) ? RayKind::straight : before;
+    case Bounce::mirror:
+      return RayKind::mirror;
+    case Bounce::refracted:
+      return RayKind::refracted;
+  }
+  return before;
+}
 
 /// What a ray brings along: on whose behalf it is traced, and through what.
 struct Path {
@@ -79,6 +99,24 @@ struct PathWave {
   void resize(size_t n) { rays.resize(n), paths.resize(n); }
   void push(const Rayf& ray, const Path& path) { rays.push(ray), paths.push(path); }
   void append(const PathWave& other, size_t first) { rays.append(other.rays, first), paths.append(other.paths, first); }
+};
+
+/// What a wave spawns, one wave for each bounce: neighbours' mirrored rays run together, as do their refracted ones,
+/// but not the ones with the others.
+struct SpawnedWaves {
+  std::array<PathWave, kBounces> by_bounce;
+
+  PathWave& operator[](Bounce bounce) { return by_bounce[size_t(bounce)]; }
+  /// To the end of `pending`, in the order of bounces.
+  void move_to(PathWave& pending) {
+    for (PathWave& wave : by_bounce) {
+      if (pending.size() == 0)
+        std::swap(pending, wave);
+      else if (wave.size() > 0)
+        pending.append(wave, 0);
+      wave.resize(0);
+    }
+  }
 };
 
 /// Shadow rays and what their pixels get of the light where nothing is in its way.

@@ -2,6 +2,7 @@
 // same packets, to the same bits.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -63,8 +64,9 @@ class TraceObserver {
   virtual void add(LightTerm term, const Rgb& light) = 0;
   /// The ray sees the background, which is left out of a transparent picture: so much of the pixel is not covered.
   virtual void uncover(float share) = 0;
-  /// A branch goes on from the hit; as the last one pending where it is traced.
-  virtual void spawn(const Rayf& ray, const Path& path, SpawnOutcome outcome) = 0;
+  /// A branch goes on from the hit. Those that are traced become the last ones pending when the wave is shaded, first
+  /// those of the first bounce, in the order of their spawning, then those of the next.
+  virtual void spawn(const Rayf& ray, const Path& path, Bounce bounce, SpawnOutcome outcome) = 0;
 
   /// A shadow ray is queued.
   virtual void ask(const LightQuery& query) = 0;
@@ -78,8 +80,12 @@ template <class T>
 class FollowedRays {
  public:
   void begin(size_t camera_rays, const T& value) { pending_.assign(camera_rays, value); }
-  void spawn(const T& value) { pending_.push_back(value); }
+  void spawn(Bounce bounce, const T& value) { spawned_[size_t(bounce)].push_back(value); }
   void take_wave(size_t first) {
+    for (std::vector<T>& spawned : spawned_) {
+      pending_.insert(pending_.end(), spawned.begin(), spawned.end());
+      spawned.clear();
+    }
     current_.assign(pending_.begin() + ptrdiff_t(first), pending_.end());
     pending_.resize(first);
   }
@@ -89,6 +95,7 @@ class FollowedRays {
 
  private:
   std::vector<T> pending_, current_;
+  std::array<std::vector<T>, kBounces> spawned_;
 };
 
 }  // namespace alhazen

@@ -43,6 +43,7 @@ class Whitted {
       accelerated_.intersect(arena_.current.rays, coherence_, arena_.hits);
       arena_.clock.enter(Phase::shading);
       shade_wave();
+      arena_.spawned.move_to(arena_.pending);
       trace_shadows();
       first = false;
     }

@@ -21,6 +21,7 @@ class TraceObserver;
 struct WaveArena {
   CellPixels pixels;
   PathWave current, pending;
+  SpawnedWaves spawned;  // by the wave that is being shaded
   HitWave hits;
   std::vector<ShadowWave> shadow_by_light;
   ShadowWave shadow;  // those of all lights, one after the other, when they are traced

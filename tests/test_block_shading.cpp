@@ -25,7 +25,7 @@ class Onlooker : public TraceObserver {
   void part(const Interface&) override {}
   void add(LightTerm, const Rgb&) override {}
   void uncover(float) override {}
-  void spawn(const Rayf&, const Path&, SpawnOutcome) override {}
+  void spawn(const Rayf&, const Path&, Bounce, SpawnOutcome) override {}
   void ask(const LightQuery&) override {}
   void answer(size_t, const Rgb&, const Rgb&) override {}
   void answered() override {}
