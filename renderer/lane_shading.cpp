@@ -16,10 +16,19 @@ using Color = BasicRgb<F>;
 
 struct Hit {
   BasicSurfacePoint<F> surface;
-  Vec3<F> d{}, b{}, n{};  // ray direction, back along it, shading normal turned towards b
-  Mask enters{};
-  Color weight{};
-  F eta{};  // the index before the surface to that beyond it
+  Vec3<F> d, b, n;  // ray direction, back along it, shading normal turned towards b
+  Mask enters;
+  Color weight;
+  F eta;  // the index before the surface to that beyond it
+
+  /// Not an aggregate: of one, GCC 12 clears all the memory first.
+  Hit(const Scene& scene, const ShadingGroup& group, const LaneWork& work)
+      : surface(surface_points(scene, work.hits, group.attributes, group.has_textures)),
+        d(work.hits.direction.load()),
+        b(-d),
+        weight(work.weight.load()) {
+    surface.footprint = footprint(work.cone_width.load(), surface.ng_world, d);
+  }
 };
 
 const Color kBlack(F(0));
@@ -148,10 +157,7 @@ void shade_lanes(const Scene& scene, const ShadingGroup& group, const LaneWork& 
   const Material& material = scene.materials[group.material];
   const TextureTable table = texture_table(scene);
   clock.enter_part(Phase::surface_points);
-  Hit hit{surface_points(scene, work.hits, group.attributes, group.has_textures)};
-  hit.d = work.hits.direction.load(), hit.b = -hit.d;
-  hit.surface.footprint = footprint(work.cone_width.load(), hit.surface.ng_world, hit.d);
-  hit.weight = work.weight.load();
+  Hit hit(scene, group, work);
   for (LaneRays* rays : {&out.straight, &out.mirror, &out.refracted}) rays->lanes = 0;
   for (LaneRays& rays : out.shadow) rays.lanes = 0;
   TextureLookup<F> lookup;
