@@ -17,27 +17,20 @@ namespace alhazen {
 template <class T, size_t n>
 void append_lanes(Lanes<T>& to, uint32_t lanes, const std::array<T, n>& values) {
   static_assert(sizeof(T) == 4);
-  const size_t at = to.size();
-  to.resize(at + n);
+  T* next = to.append_unset(size_t(std::popcount(lanes)), n);
 #if defined __AVX512F__
   if constexpr (n == 16) {
     const __m512i packed = _mm512_maskz_compress_epi32(__mmask16(lanes), _mm512_loadu_si512(values.data()));
-    _mm512_storeu_si512(&to[at], packed);
-    return to.resize(at + size_t(std::popcount(lanes)));
+    return _mm512_storeu_si512(next, packed);
   }
 #endif
-  size_t end = at;
-  for (; lanes; lanes &= lanes - 1) to[end++] = values[size_t(std::countr_zero(lanes))];
-  to.resize(end);
+  for (; lanes; lanes &= lanes - 1) *next++ = values[size_t(std::countr_zero(lanes))];
 }
 
 /// Appends the value `count` times, at most `n`.
 template <size_t n, class T>
 void append_same(Lanes<T>& to, size_t count, const T& value) {
-  const size_t at = to.size();
-  to.resize(at + n);
-  std::fill_n(&to[at], n, value);
-  to.resize(at + count);
+  std::fill_n(to.append_unset(count, n), n, value);
 }
 
 }  // namespace alhazen

@@ -31,16 +31,20 @@ class Lanes {
     size_ = size;
   }
 
-  void push(const T& value) {
-    resize(size_ + 1);
-    data_[size_ - 1] = value;
+  void push(const T& value) { *append_unset(1, 1) = value; }
+
+  /// Makes room for `count` more values, which are not set; up to `writable` can be written there.
+  T* append_unset(size_t count, size_t writable) {
+    const size_t at = size_;
+    if (at + writable > capacity_) grow(at + writable);
+    size_ = at + count;
+    return &data_[at];
   }
 
   /// The other's values from `first` on.
   void append(const Lanes& other, size_t first = 0) {
-    const size_t at = size_, count = other.size_ - first;
-    resize(at + count);
-    if (count) std::memcpy(&data_[at], &other.data_[first], count * sizeof(T));
+    const size_t count = other.size_ - first;
+    if (count) std::memcpy(append_unset(count, count), &other.data_[first], count * sizeof(T));
   }
 
  private:
@@ -48,7 +52,8 @@ class Lanes {
     void operator()(T* p) const { std::free(p); }
   };
 
-  void grow(size_t size) {
+  /// Rare, and not to be repeated wherever something is appended.
+  [[gnu::noinline, gnu::cold]] void grow(size_t size) {
     const size_t wanted = size > 2 * capacity_ ? size : 2 * capacity_;
     const size_t padded = (wanted + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
     const size_t bytes = (padded * sizeof(T) + kLaneAlignment - 1) / kLaneAlignment * kLaneAlignment;

@@ -162,8 +162,8 @@ Corners<F> corners_of(const Triangles& triangles, const Attributes& has) {
   const auto normals = [](const TriangleMesh& part) -> const auto& { return part.normals; };
   const auto tangents = [](const TriangleMesh& part) -> const auto& { return part.tangents; };
   const auto colors = [](const TriangleMesh& part) -> const auto& { return part.colors; };
-  for (size_t k = 0; k < 3; ++k) c.p_object[k] = triangles.vec3(positions, k);
-  for (size_t k = 0; k < 3 && has.normals; ++k) c.n_object[k] = triangles.vec3(normals, k);
+  for (size_t k = 0; k < 3; ++k) c.p_object[k].store(triangles.vec3(positions, k));
+  for (size_t k = 0; k < 3 && has.normals; ++k) c.n_object[k].store(triangles.vec3(normals, k));
   for (size_t k = 0; k < 3 && has.tangents; ++k) c.t_object[k].store(triangles.vec3(tangents, k));
   if (has.tangents) c.handedness = triangles.fourth(tangents, 0);
   for (size_t i = 0; i < has.uv_sets; ++i) {

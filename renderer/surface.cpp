@@ -12,8 +12,8 @@ Corners<float> corners_of(const PosedPart& posed, const TriangleMesh& part, cons
   Corners<float> c;
   if (has.polygon_normals) c.n_polygon = posed.polygon_normal(polygon_of(part, triangle));
   for (size_t k = 0; k < 3; ++k) {
-    c.p_object[k] = posed.position(corner[k]);
-    if (has.normals) c.n_object[k] = posed.normal(corner[k]);
+    c.p_object[k].store(posed.position(corner[k]));
+    if (has.normals) c.n_object[k].store(posed.normal(corner[k]));
     if (has.tangents) {
       const Vec4f t = posed.tangent(corner[k]);
       c.t_object[k].store({t.x, t.y, t.z});

@@ -6,6 +6,7 @@
 
 #include "accel/accelerated_scene.h"
 #include "core/lane_vec.h"
+#include "core/unset_array.h"
 #include "renderer/scene.h"
 #include "renderer/surface_ids.h"
 
@@ -19,13 +20,13 @@ struct BasicSurfacePoint {
   Vec3<F> ng_world, ns_world;  // geometric and interpolated normal, unit, outward
   Vec3<F> tangent_world;       // unit or zero
   F bitangent_sign = 1;
-  std::array<Vec2<F>, kMaxUvSets> uvs;
+  UnsetArray<Vec2<F>, kMaxUvSets> uvs;
   int uv_count = 0;
   BasicRgba<F> color;
   uint32_t material = 0;
-  std::array<F, kMaxUvSets> uv_per_metre{};  // the root of the ratio of areas; of shapes by measure_shape_uvs, else 0
-  F footprint = 0;                           // metres across, of what the hit stands for; 0: a point
-  TextureLookup<F>* lookup = nullptr;        // see BasicSurfaceInputs
+  UnsetArray<F, kMaxUvSets> uv_per_metre;  // the root of the ratio of areas; of shapes by measure_shape_uvs, else 0
+  F footprint = 0;                         // metres across, of what the hit stands for; 0: a point
+  TextureLookup<F>* lookup = nullptr;      // see BasicSurfaceInputs
 
   [[nodiscard]] BasicSurfaceInputs<F> inputs() const {
     return {uvs.data(), uv_count, color, footprint, uv_per_metre.data(), lookup};

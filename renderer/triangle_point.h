@@ -14,8 +14,7 @@ inline constexpr double kUlp = 0x1p-24;  // half the spacing of floats, relative
 /// memory that nobody sets to 0.
 template <class F>
 struct Corners {
-  std::array<Vec3<F>, 3> p_object, n_object;
-  std::array<Vec3Array<F>, 3> t_object;
+  std::array<Vec3Array<F>, 3> p_object, n_object, t_object;
   Vec3<F> n_polygon;  // in object space
   F handedness;       // of the first tangent
   std::array<std::array<Vec2Array<F>, 3>, kMaxUvSets> uvs;
@@ -61,7 +60,7 @@ template <class F>
                                          const Affine3<DoubleOf<F>>* m, const DoubleOf<F>& roundings,
                                          BasicSurfacePoint<F>& s) {
   using D = DoubleOf<F>;
-  const auto vertex = [&](size_t k) { return convert<D>(corners.p_object[k]); };
+  const auto vertex = [&](size_t k) { return convert<D>(corners.p_object[k].load()); };
   const Vec3<D> origin = vertex(0), e1 = vertex(1) - origin, e2 = vertex(2) - origin;
   const Vec3<D> p = origin + e1 * convert<D>(u) + e2 * convert<D>(v);
   s.p_world = m ? transform_point(*m, p) : p;
@@ -74,12 +73,12 @@ template <class F>
 
   const auto size_of = [](const Vec3<D>& x) { return larger(absolute(x.x), larger(absolute(x.y), absolute(x.z))); };
   const D twice_area = m ? length(across) : length_outward;
-  D size = size_of(s.p_world), error = plane_error(corners.p_object, twice_area);
+  D size = size_of(s.p_world), error = plane_error(loaded(corners.p_object), twice_area);
   if (m) size = size + size_of(m->origin), error = error * absolute(stretch);
   s.offset = convert<F>(D(D(kUlp) * roundings * size + error * reciprocal));
 
   if (has.normals || has.polygon_normals) {
-    const Vec3<F> n = has.normals ? interpolated(corners.n_object, u, v) : corners.n_polygon;
+    const Vec3<F> n = has.normals ? interpolated(loaded(corners.n_object), u, v) : corners.n_polygon;
     const Vec3<F> n_world =
         unit_vector(m ? convert<F>(outer_normal(*m, stretch, convert<D>(n)) * D(D(1) / absolute(stretch))) : n);
     const F n_squared = dot(n_world, n_world);
@@ -107,7 +106,7 @@ template <class F>
                                                const Affine3<DoubleOf<F>>* m, BasicSurfacePoint<F>& s) {
   using D = DoubleOf<F>;
   const auto vertex = [&](size_t k) {
-    const Vec3<D> p = convert<D>(corners.p_object[k]);
+    const Vec3<D> p = convert<D>(corners.p_object[k].load());
     return m ? transform_point(*m, p) : p;
   };
   const Vec3<D> p0 = vertex(0);
@@ -123,14 +122,14 @@ template <class F>
 template <class F>
 F mesh_curvature(const Corners<F>& corners, const Affine3<DoubleOf<F>>* m) {
   using D = DoubleOf<F>;
-  const auto& p = corners.p_object;
+  const std::array<Vec3<F>, 3> p = loaded(corners.p_object);
   const D stretch = m ? determinant(*m) : D(1);
   const auto edge = [&](size_t k) {
     const Vec3<D> e = convert<D>(p[k]) - convert<D>(p[0]);
     return convert<F>(m ? transform_vector(*m, e) : e);
   };
   const auto normal = [&](size_t k) {
-    const Vec3<F>& n = corners.n_object[k];
+    const Vec3<F> n = corners.n_object[k].load();
     return normalize(m ? convert<F>(outer_normal(*m, stretch, convert<D>(n))) : n);
   };
   const Vec3<F> e1 = edge(1), e2 = edge(2), across = cross(e1, e2), n0 = normal(0);
