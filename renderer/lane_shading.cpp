@@ -1,6 +1,7 @@
 #include "renderer/lane_shading.h"
 
 #include <numbers>
+#include <optional>
 
 #include "materials/phong.h"
 #include "renderer/camera_ray.h"
@@ -15,6 +16,7 @@ using Mask = MaskOf<F>;
 using Color = BasicRgb<F>;
 
 struct Hit {
+  std::optional<LaneTriangles> triangles;
   BasicSurfacePoint<F> surface;
   Vec3<F> d, b, n;  // ray direction, back along it, shading normal turned towards b
   Mask enters;
@@ -23,7 +25,7 @@ struct Hit {
 
   /// Not an aggregate: of one, GCC 12 clears all the memory first.
   Hit(const Scene& scene, const ShadingGroup& group, const LaneWork& work)
-      : surface(surface_points(scene, work.hits, group.attributes, group.has_textures)),
+      : surface(surface_points(scene, work.hits, group.attributes, group.has_textures, triangles)),
         d(work.hits.direction.load()),
         b(-d),
         weight(work.weight.load()) {
@@ -141,7 +143,7 @@ void set_cones(const Scene& scene, const ShadingGroup& group, const LaneWork& wo
   const F width = work.cone_width.load(), spread = work.cone_spread.load();
   out.mirror.cone_spread = out.refracted.cone_spread = work.cone_spread;
   if (scene.images.empty()) return;
-  const F outward = mean_curvature(scene, work.hits, group.attributes, hit.surface, width);
+  const F outward = mean_curvature(scene, work.hits, group.attributes, hit.surface, hit.triangles, width);
   const F curvature = select(dot(hit.surface.ns_world, hit.d) < F(0), outward, -outward);
   const auto set = [&](LaneRays& rays, const F& eta) {
     if (rays.lanes == 0) return;

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "renderer/lane_surfaces.h"
 #include "renderer/phase_clock.h"
 #include "renderer/shading_groups.h"
 

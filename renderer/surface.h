@@ -50,30 +50,11 @@ struct Attributes {
           part.normals.empty() && !part.polygon_normals.empty(), part.uvs.size()};
 }
 
-/// Hits side by side: all on shapes, or all on parts of meshes with the same attributes. Nothing moves.
-struct LaneHits {
-  LaneArray<UintOf<ShadingLanes>> object, part, primitive;
-  Vec3Array<ShadingLanes> origin, direction;  // of the rays, in world space
-  LaneArray<ShadingLanes> t, u, v;
-
-  [[nodiscard]] HitIds ids(size_t k) const { return {object[k], part[k], primitive[k]}; }
-};
-
-/// `surface_point` of each, to the bit, as far as a material asks: `has` may lack what the parts have. Without
-/// `has_textures`, how fast texture coordinates run is left out.
-[[nodiscard]] BasicSurfacePoint<ShadingLanes> surface_points(const Scene& scene, const LaneHits& hits,
-                                                             const Attributes& has, bool has_textures) noexcept;
-
 /// The mean curvature at a point that surface_point gave, per metre: half of how fast the normal turns outward as one
 /// goes along the surface, summed over two perpendicular directions; below 0 in hollows. Triangles have that of their
 /// vertices' normals, shapes that over `width` metres. 0 where there is none to be had.
 [[nodiscard]] float mean_curvature(const Scene& scene, const HitIds& ids, const SurfacePoint& point, float width,
                                    float time = 0) noexcept;
-
-/// The same of the points that surface_points gave, to the bit; `has` as there.
-[[nodiscard]] ShadingLanes mean_curvature(const Scene& scene, const LaneHits& hits, const Attributes& has,
-                                          const BasicSurfacePoint<ShadingLanes>& points,
-                                          const ShadingLanes& width) noexcept;
 
 /// Sets `uv_per_metre` of a point on a shape, from how far texture coordinates go over `width` metres. Meshes have it
 /// from surface_point.

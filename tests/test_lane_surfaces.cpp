@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "renderer/surface.h"
+#include "renderer/lane_surfaces.h"
 #include "tests/uniform.h"
 
 namespace alhazen {
@@ -57,7 +57,10 @@ LaneHits random_hits(Uniform& uniform, const Scene& scene, const std::vector<uin
 /// Whether every lane has the bits of the hit alone; else the first that has not.
 testing::AssertionResult are_as_alone(const Scene& scene, const LaneHits& hits, const Attributes& has,
                                       bool has_textures) {
-  const BasicSurfacePoint<F> lanes = surface_points(scene, hits, has, has_textures);
+  std::optional<LaneTriangles> triangles;
+  const BasicSurfacePoint<F> lanes = surface_points(scene, hits, has, has_textures, triangles);
+  constexpr float kWidth = 0.01f;
+  const Values<float> curvature(mean_curvature(scene, hits, has, lanes, triangles, F(kWidth)));
   const Values<Vec3d> p(lanes.p_world);
   const Values<float> offset(lanes.offset);
   const Values<Vec3f> ng(lanes.ng_world), ns(lanes.ns_world), tangent(lanes.tangent_world);
@@ -67,6 +70,8 @@ testing::AssertionResult are_as_alone(const Scene& scene, const LaneHits& hits, 
     const SurfacePoint one = surface_point(scene, ray, hits.ids(k), hits.t[k], hits.u[k], hits.v[k]);
     if (!(p.are(k, one.p_world) && offset.are(k, one.offset) && ng.are(k, one.ng_world) && ns.are(k, one.ns_world)))
       return testing::AssertionFailure() << "lane " << k << ": place or normals";
+    if (!curvature.are(k, mean_curvature(scene, hits.ids(k), one, kWidth)))
+      return testing::AssertionFailure() << "lane " << k << ": curvature";
     if (!has_textures) continue;
     if (!(tangent.are(k, one.tangent_world) && sign.are(k, one.bitangent_sign)))
       return testing::AssertionFailure() << "lane " << k << ": tangent";
