@@ -26,15 +26,20 @@ template <class U>
   return ((x & U(0x55555555u)) << 1) | ((x & U(0xaaaaaaaau)) >> 1);
 }
 
-/// Nested uniform scrambling by hashing (Burley, Practical Hash-based Owen Scrambling, JCGT 9(4), 2020).
+/// Nested uniform scrambling by hashing (Burley, Practical Hash-based Owen Scrambling, JCGT 9(4), 2020), of what comes
+/// with its bits reversed.
 template <class U>
-[[nodiscard]] constexpr U owen_scramble(U x, std::type_identity_t<U> seed) noexcept {
-  x = reverse_bits(x) + seed;
+[[nodiscard]] constexpr U owen_scramble_reversed(U x, std::type_identity_t<U> seed) noexcept {
+  x += seed;
   x ^= x * U(0x6c50b47cu);
   x ^= x * U(0xb82f1e52u);
   x ^= x * U(0xc7afe638u);
   x ^= x * U(0x8d22f6e6u);
   return reverse_bits(x);
+}
+template <class U>
+[[nodiscard]] constexpr U owen_scramble(U x, std::type_identity_t<U> seed) noexcept {
+  return owen_scramble_reversed(reverse_bits(x), seed);
 }
 
 /// The bits times Pascal's triangle modulo 2: bit j is the sum of the bits k with C(k, j) odd, which are those whose
@@ -60,8 +65,9 @@ template <class F = float>
 template <class U>
 [[nodiscard]] constexpr Vec2<U> sobol_owen_bits(U index, std::type_identity_t<U> seed) noexcept {
   const U i = owen_scramble(index, mix_bits<U>(seed));
-  const U y = reverse_bits(pascal_product(i));
-  return {owen_scramble(reverse_bits(i), mix_bits<U>(seed + U(1))), owen_scramble(y, mix_bits<U>(seed + U(2)))};
+  // The sequence is i, and i times Pascal's triangle, each with its bits reversed.
+  return {owen_scramble_reversed(i, mix_bits<U>(seed + U(1))),
+          owen_scramble_reversed(pascal_product(i), mix_bits<U>(seed + U(2)))};
 }
 
 [[nodiscard]] constexpr Vec2f sobol_owen(uint32_t index, uint32_t seed) noexcept {

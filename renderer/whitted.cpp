@@ -188,10 +188,11 @@ class Whitted {
     all.clear();
   }
 
+  /// Those of all lights, behind those of the first.
   ShadowWave& gather_shadows() {
-    if (arena_.shadow_by_light.size() == 1) return arena_.shadow_by_light[0];
-    for (ShadowWave& wave : arena_.shadow_by_light) arena_.shadow.append(wave), wave.clear();
-    return arena_.shadow;
+    ShadowWave& all = arena_.shadow_by_light.front();
+    for (ShadowWave& wave : std::span(arena_.shadow_by_light).subspan(1)) all.append(wave), wave.clear();
+    return all;
   }
 
   const Scene& scene_;

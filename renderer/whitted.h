@@ -24,7 +24,6 @@ struct WaveArena {
   SpawnedWaves spawned;  // by the wave that is being shaded
   HitWave hits;
   std::vector<ShadowWave> shadow_by_light;
-  ShadowWave shadow;  // those of all lights, one after the other, when they are traced
   Lanes<Rgb> visible;
   HitsByGroup hits_by_group;
   LaneWork lane_work;
