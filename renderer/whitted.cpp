@@ -121,6 +121,7 @@ class Whitted {
 
   /// First those that see the background; the others' numbers move to the front of `rays`.
   void shade_misses(std::span<uint32_t> rays) {
+    if (!observed && !scene_.environment && !options_.transparent) return add_background(rays);
     size_t others = 0;
     for (const uint32_t i : rays) {
       const RayKind kind = arena_.current.paths.kind[i];
@@ -138,30 +139,48 @@ class Whitted {
       background_[path.pixel] += path.weight.r;  // a product of (1 - alpha): grey
       tell([&](TraceObserver& observer) { observer.uncover(path.weight.r); });
     }
-    constexpr size_t kTogether = observed ? 1 : kLanes;
-    for (size_t first = 0; first < others; first += kTogether)
-      add_environment(rays.subspan(first, std::min(kTogether, others - first)));
+    add_environment(rays.first(others));
   }
 
   void add_environment(std::span<const uint32_t> rays) {
-    if constexpr (observed) {
-      const Path path = arena_.current.paths[rays[0]];
-      tell([&](TraceObserver& observer) { observer.look_at(rays[0]); });
-      const Vec3f direction = arena_.current.rays.direction.get(rays[0]);
-      return sink_.add(path.pixel, LightTerm::environment,
-                       path.weight * environment_radiance(*scene_.environment, direction, path.roughness));
-    }
+    const Environment& environment = *scene_.environment;
     const PathRows& paths = arena_.current.paths;
-    const RayWave& wave = arena_.current.rays;
-    LaneArray<IntOf<ShadingLanes>> numbers;
-    for (size_t k = 0; k < kLanes; ++k) numbers[k] = int32_t(rays[k < rays.size() ? k : 0]);
-    const LanePicker<ShadingLanes> picker(numbers.load(), rays.front(), rays.back());
-    const auto load = [&](const Lanes<float>& row) { return picker.pick<ShadingLanes>(row); };
-    const Vec3<ShadingLanes> direction{load(wave.direction.x), load(wave.direction.y), load(wave.direction.z)};
-    const BasicRgb<ShadingLanes> weight{load(paths.red), load(paths.green), load(paths.blue)};
-    RgbArray<ShadingLanes> light;
-    light.store(weight * environment_radiance(*scene_.environment, direction, load(paths.roughness)));
-    for (size_t k = 0; k < rays.size(); ++k) sink_.radiance[paths.pixel[rays[k]]] += light.get(k);
+    const Vec3Lanes& direction = arena_.current.rays.direction;
+    if constexpr (observed) {
+      for (const uint32_t i : rays) {
+        tell([&](TraceObserver& observer) { observer.look_at(i); });
+        sink_.add(paths.pixel[i], LightTerm::environment,
+                  paths.weight(i) * environment_radiance(environment, direction.get(i), paths.roughness[i]));
+      }
+    } else {
+      add_in_lanes(rays, [&](const auto& load) {
+        const Vec3<ShadingLanes> d{load(direction.x), load(direction.y), load(direction.z)};
+        return environment_radiance(environment, d, load(paths.roughness));
+      });
+    }
+  }
+
+  /// Where it is all that rays can see.
+  void add_background(std::span<const uint32_t> rays) {
+    if (scene_.background == Rgb(0.0f)) return;
+    add_in_lanes(rays, [&](const auto&) { return BasicRgb<ShadingLanes>(scene_.background); });
+  }
+
+  /// To each ray's pixel its weight times `radiance(load)`; `load(row)`: what the rays of a block have there.
+  template <class Radiance>
+  void add_in_lanes(std::span<const uint32_t> rays, const Radiance& radiance) {
+    const PathRows& paths = arena_.current.paths;
+    for (size_t first = 0; first < rays.size(); first += kLanes) {
+      const std::span<const uint32_t> block = rays.subspan(first, std::min(kLanes, rays.size() - first));
+      LaneArray<IntOf<ShadingLanes>> numbers;
+      for (size_t k = 0; k < kLanes; ++k) numbers[k] = int32_t(block[k < block.size() ? k : 0]);
+      const LanePicker<ShadingLanes> picker(numbers.load(), block.front(), block.back());
+      const auto load = [&](const Lanes<float>& row) { return picker.pick<ShadingLanes>(row); };
+      const BasicRgb<ShadingLanes> weight{load(paths.red), load(paths.green), load(paths.blue)};
+      RgbArray<ShadingLanes> light;
+      light.store(weight * radiance(load));
+      for (size_t k = 0; k < block.size(); ++k) sink_.radiance[paths.pixel[block[k]]] += light.get(k);
+    }
   }
 
   /// Of a ray that leaves the scene; else it sees the environment.
