@@ -26,12 +26,13 @@ struct FilmRay {
 template <class F>
 [[nodiscard]] FilmRay<F> film_ray(const Film& film, const DoubleOf<F>& x, const DoubleOf<F>& y) {
   using D = DoubleOf<F>;
+  // Column by column: a whole map in lanes is more than the registers, and would be written out for each point.
+  const Affine3d& m = film.world_from_camera;
   const auto all = [](const Vec3d& v) { return Vec3<D>(D(v.x), D(v.y), D(v.z)); };
-  const Affine3<D> m{all(film.world_from_camera.x), all(film.world_from_camera.y), all(film.world_from_camera.z),
-                     all(film.world_from_camera.origin)};
   const D px = (x - D(film.center_x)) * D(film.step), py = (D(film.center_y) - y) * D(film.step);
-  if (!film.perspective) return {convert<F>(transform_point(m, Vec3<D>(px, py, D(0)))), convert<F>(-m.z)};
-  return {convert<F>(m.origin), convert<F>(normalize(transform_vector(m, Vec3<D>(px, py, D(-1)))))};
+  const Vec3<D> in_film = all(m.x) * px + all(m.y) * py;
+  if (!film.perspective) return {convert<F>(in_film + all(m.origin)), broadcast<F>(Vec3f(-m.z))};
+  return {broadcast<F>(Vec3f(m.origin)), convert<F>(normalize(in_film - all(m.z)))};
 }
 
 /// The ray through a film point.
