@@ -24,7 +24,8 @@ struct FilmRay {
   Vec3<F> origin, direction;
 };
 template <class F>
-[[nodiscard]] FilmRay<F> film_ray(const Film& film, const DoubleOf<F>& x, const DoubleOf<F>& y) {
+[[nodiscard, gnu::always_inline]] inline FilmRay<F> film_ray(const Film& film, const DoubleOf<F>& x,
+                                                             const DoubleOf<F>& y) {
   using D = DoubleOf<F>;
   // Column by column: a whole map in lanes is more than the registers, and would be written out for each point.
   const Affine3d& m = film.world_from_camera;

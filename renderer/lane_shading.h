@@ -1,5 +1,5 @@
 // Whitted's shading of several hits of one material side by side: what it is of each, to the bit, when it is shaded
-// alone (renderer/whitted.cpp).
+// alone (renderer/hit_shading.h).
 #pragma once
 
 #include <vector>
