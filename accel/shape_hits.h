@@ -67,6 +67,7 @@ template <class T>
   Nearest<T> found{T(0), T(0), Mask(false), crossings.doubtful};
   for (const auto& c : crossings.at) {
     const Mask candidate = c.present && !found.hit && !found.doubtful && may_round_into(c.t, c.error, t_min, t_max);
+    if (!any_of(candidate)) continue;  // as most behind the first
     const T t = rounded_to_float(c.t + c.error);
     found.doubtful = found.doubtful || (candidate && !(t == rounded_to_float(c.t - c.error)));
     const Mask hit = candidate && !found.doubtful && t >= t_min && t <= t_max;
@@ -85,6 +86,7 @@ template <class T>
 [[nodiscard]] Blocked<T> blocked(const LineCrossings<T>& crossings, const T& t_min, const T& t_max) {
   Blocked<T> found{MaskOf<T>(false), crossings.doubtful};
   for (const auto& c : crossings.at) {
+    if (!any_of(c.present)) continue;
     found.blocked = found.blocked || (c.present && c.t - c.error > t_min && c.t + c.error < t_max);
     found.doubtful = found.doubtful || (c.present && may_round_into(c.t, c.error, t_min, t_max));
   }
