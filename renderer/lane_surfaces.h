@@ -6,8 +6,7 @@
 namespace alhazen {
 
 /// `surface_point` of each, to the bit, as far as a material asks: `has` may lack what the parts have. Without
-/// `has_textures`, how fast texture coordinates run is left out. Hits on meshes leave their
-/// triangles in `triangles`.
+/// `has_textures`, how fast texture coordinates run is left out. Hits on meshes leave their triangles in `triangles`.
 [[nodiscard]] BasicSurfacePoint<ShadingLanes> surface_points(const Scene& scene, const LaneHits& hits,
                                                              const Attributes& has, bool has_textures,
                                                              std::optional<LaneTriangles>& triangles) noexcept;

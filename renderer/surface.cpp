@@ -82,8 +82,7 @@ SurfacePoint surface_point(const Scene& scene, const Crossing& crossing) noexcep
       s.uvs[0] = std::visit(uv_on, scene.geometry.shapes[placed.shape]);
     return s;
   }
-  const uint32_t mesh = scene.geometry.mesh_instances.mesh_of(crossing.object);
-  const TriangleMesh& part = scene.geometry.meshes[mesh].parts[crossing.part];
+  const TriangleMesh& part = part_of(scene.geometry, crossing.object, crossing.part);
   s.material = part.material;
   Attributes has = attributes(part);
   has.normals = has.tangents = has.polygon_normals = false;

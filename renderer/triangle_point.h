@@ -91,16 +91,18 @@ template <class F>
   }
 }
 
-/// Texture coordinates and colour, and how fast the coordinates go over the triangle: the root of the ratio of the
-/// areas.
+/// Texture coordinates and colour. How fast the coordinates go is left as unknown.
 template <class F>
 [[gnu::always_inline]] inline void interpolate_attributes(const Corners<F>& corners, const Attributes& has, const F& u,
                                                           const F& v, BasicSurfacePoint<F>& s) {
   s.uv_count = int(has.uv_sets);
-  for (size_t k = 0; k < has.uv_sets; ++k) s.uvs[k] = interpolated(loaded(corners.uvs[k]), u, v);
+  for (size_t k = 0; k < has.uv_sets; ++k)
+    s.uvs[k] = interpolated(loaded(corners.uvs[k]), u, v), s.uv_per_metre[k] = F(0);
   if (!has.colors) return;
   s.color = {interpolated(loaded(corners.colors), u, v), interpolated(loaded(corners.alphas), u, v)};
 }
+
+/// How fast the texture coordinates go over the triangle: the root of the ratio of the areas.
 template <class F>
 [[gnu::always_inline]] inline void measure_uvs(const Corners<F>& corners, const Attributes& has,
                                                const Affine3<DoubleOf<F>>* m, BasicSurfacePoint<F>& s) {
