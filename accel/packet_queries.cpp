@@ -205,8 +205,9 @@ struct Intersector {
     // A shape's face, which takes the place of the part, is in its u.
     const U shape = select(on_shape, of_hit(built.top.first_shape) + primitive, U(0)),
             face = convert<U>(convert<IntOf<U>>(select(convert_mask<F>(on_shape), F(packet.hit.u, anywhere), F(0))));
-    store_lanes(select(on_shape, look_up(built.top.object_of_shape, shape, lane_bits(on_shape)), select(hit, object, none)),
-                select(on_shape, face, part), select(on_shape, U(0), primitive), first);
+    store_lanes(
+        select(on_shape, look_up(built.top.object_of_shape, shape, lane_bits(on_shape)), select(hit, object, none)),
+        select(on_shape, face, part), select(on_shape, U(0), primitive), first);
   }
 
   template <class U>

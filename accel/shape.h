@@ -4,6 +4,7 @@
 //   exact_crossings(shape, line)     the same, exactly
 //   bounds(shape)                    a box around it
 //   project, normal, texture_coordinates, u_tangent (shape, p_object, face)
+//   flat_face(shape, face)           the plane of a face across an axis
 #pragma once
 
 #include <variant>

@@ -29,23 +29,44 @@ void set_mesh_points(const LaneTriangles& triangles, const LaneHits& hits, const
     set_points(nullptr);
 }
 
-using LaneShapes = std::array<const Shape*, kWidthOf<F>>;
+/// What lanes are on, where it is of one kind.
+template <class Kind>
+using EachLanes = std::array<const Kind*, kWidthOf<F>>;
 
-/// One sphere, or sphere by sphere.
+/// Points on shapes and their unit normals, in the shapes' own spaces.
+struct ObjectPoints {
+  Vec3<D> p, n;
+};
+
+/// One sphere, or sphere by sphere; as the kinds after it.
 struct LaneSpheres {
   using Kind = Sphere;
   D radius;
 
   explicit LaneSpheres(const Sphere& sphere) : radius(sphere.radius) {}
-  explicit LaneSpheres(const LaneShapes& shapes)
-      : radius([&](auto k) { return std::get_if<Sphere>(shapes[k])->radius; }) {}
+  explicit LaneSpheres(const EachLanes<Sphere>& spheres) : radius([&](auto k) { return spheres[k]->radius; }) {}
 
-  [[nodiscard]] uint32_t doubtful(const LaneHits&) const { return 0; }
-  [[nodiscard]] Vec3<D> projected(const Vec3<D>& p) const { return normalize(p) * radius; }
-  [[nodiscard]] static Vec3<D> normal(const Vec3<D>& p) { return normalize(p); }
+  [[nodiscard]] ObjectPoints near(const Vec3<D>& p_object) const {
+    const Vec3<D> p = normalize(p_object) * radius;
+    return {p, normalize(p)};
+  }
 };
 
-/// The same of quadrics; caps and double planes are left to be done one by one.
+struct LaneCylinders {
+  using Kind = Cylinder;
+  CylinderWall<D> wall;
+
+  explicit LaneCylinders(const Cylinder& c) : wall{D(c.height), D(c.radius_bottom), D(c.radius_top)} {}
+  explicit LaneCylinders(const EachLanes<Cylinder>& cylinders)
+      : wall{D([&](auto k) { return cylinders[k]->height; }), D([&](auto k) { return cylinders[k]->radius_bottom; }),
+             D([&](auto k) { return cylinders[k]->radius_top; })} {}
+
+  [[nodiscard]] ObjectPoints near(const Vec3<D>& p_object) const {
+    const Vec3<D> p = project(wall, p_object);
+    return {p, normal(wall, p)};
+  }
+};
+
 struct LaneQuadrics {
   using Kind = Quadric;
   std::array<D, 10> coefficients;
@@ -53,25 +74,29 @@ struct LaneQuadrics {
   explicit LaneQuadrics(const Quadric& quadric) {
     for (size_t c = 0; c < coefficients.size(); ++c) coefficients[c] = D(quadric.coefficients[c]);
   }
-  explicit LaneQuadrics(const LaneShapes& shapes) {
+  explicit LaneQuadrics(const EachLanes<Quadric>& quadrics) {
     for (size_t c = 0; c < coefficients.size(); ++c)
-      coefficients[c] = D([&](auto k) { return std::get_if<Quadric>(shapes[k])->coefficients[c]; });
+      coefficients[c] = D([&](auto k) { return quadrics[k]->coefficients[c]; });
   }
 
-  [[nodiscard]] uint32_t doubtful(const LaneHits& hits) const {
-    return lane_bits(may_be_square(coefficients)) | lane_bits(hits.part.load() != U(uint32_t(kWallFace)));
-  }
-  [[nodiscard]] Vec3<D> projected(const Vec3<D>& p) const { return project_to_wall(coefficients, p); }
-  [[nodiscard]] Vec3<D> normal(const Vec3<D>& p) const {
-    return scaled_to_unit(quadric_half_gradient(coefficients, p));
+  [[nodiscard]] ObjectPoints near(const Vec3<D>& p_object) const {
+    const Vec3<D> p = project_to_wall(coefficients, p_object);
+    return {p, wall_normal(coefficients, p)};
   }
 };
 
-/// The hits in the shapes' spaces, about where their surfaces are.
-Vec3<D> object_points(const LaneHits& hits, const Affine3<D>& object_from_world, const Vec3<D>& origin_world) {
-  const Vec3<D> along = convert<D>(hits.direction.load()) * convert<D>(hits.t.load());
-  return transform_vector(object_from_world, convert<D>(hits.origin.load()) - origin_world + along);
-}
+/// Caps and other flat faces.
+struct LaneFlatFaces {
+  using Kind = FlatFace<double>;
+  FlatFace<D> face;
+
+  explicit LaneFlatFaces(const Kind& one) : face{D(one.axis), D(one.coordinate), D(one.side)} {}
+  explicit LaneFlatFaces(const EachLanes<Kind>& faces)
+      : face{D([&](auto k) { return faces[k]->axis; }), D([&](auto k) { return faces[k]->coordinate; }),
+             D([&](auto k) { return faces[k]->side; })} {}
+
+  [[nodiscard]] ObjectPoints near(const Vec3<D>& p_object) const { return {project(face, p_object), normal(face)}; }
+};
 
 /// Where shapes stand: all lanes' at one place, or each at its own.
 struct LanePlaces {
@@ -84,18 +109,25 @@ struct LanePlaces {
       : world_from_object(m), object_from_world(inverse(m)), stretch(determinant(m)) {}
 };
 
-/// What `shape_point` does, for shapes of one kind, but for texture coordinates. Answers the lanes that are left.
-template <class Shapes>
-uint32_t set_points_on(const Shapes& shapes, const LanePlaces& places, const LaneHits& hits, BasicSurfacePoint<F>& s) {
-  const Affine3<D>& m = places.world_from_object;
-  const Vec3<D> p = shapes.projected(object_points(hits, places.object_from_world, m.origin));
-  s.p_world = transform_point(m, p);
-  s.ng_world = s.ns_world = convert<F>(normalize(outer_normal(m, places.stretch, shapes.normal(p))));
-  s.offset = shape_offset<F>(s.p_world);
-  return shapes.doubtful(hits);
+/// The hits in the shapes' spaces, about where their surfaces are.
+Vec3<D> object_points(const LaneHits& hits, const Affine3<D>& object_from_world, const Vec3<D>& origin_world) {
+  const Vec3<D> along = convert<D>(hits.direction.load()) * convert<D>(hits.t.load());
+  return transform_vector(object_from_world, convert<D>(hits.origin.load()) - origin_world + along);
+}
+Vec3<D> object_points(const LaneHits& hits, const LanePlaces& places) {
+  return object_points(hits, places.object_from_world, places.world_from_object.origin);
 }
 
-/// The same for one polygon, with its texture coordinates: in all lanes lie one plane's.
+/// What `shape_point` does with a point on a shape, but for texture coordinates.
+void place(const ObjectPoints& points, const LanePlaces& places, const LaneHits& hits, BasicSurfacePoint<F>& s) {
+  const Affine3<D>& m = places.world_from_object;
+  s.p_world = transform_point(m, points.p);
+  const Vec3<F> n = convert<F>(normalize(outer_normal(m, places.stretch, points.n)));
+  s.ng_world = s.ns_world = select(dot(n, n) > F(0), n, -hits.direction.load());  // but at a singular point
+  s.offset = shape_offset<F>(s.p_world);
+}
+
+/// For one polygon, with its texture coordinates: in all lanes lie one plane's.
 void set_points_on(const Polygon& polygon, const Affine3d& m, const LaneHits& hits, BasicSurfacePoint<F>& s) {
   const Vec3d ng = normalize(transform_normal(m, polygon.unit_normal)), center = polygon.center;
   const Affine3<D> all = broadcast(m);
@@ -109,47 +141,85 @@ void set_points_on(const Polygon& polygon, const Affine3d& m, const LaneHits& hi
   s.uvs[0] = {convert<F>(uv.x), convert<F>(uv.y)};
 }
 
-/// For one shape that all hits are on. Answers the lanes that are left.
-uint32_t set_points_on_one(const ShapeInstance& placed, const Shape& shape, bool has_textures, const LaneHits& hits,
-                           BasicSurfacePoint<F>& s) {
-  const Affine3d& m = placed.world_from_object;
-  if (const auto* polygon = std::get_if<Polygon>(&shape)) return set_points_on(*polygon, m, hits, s), 0;
-  if (has_textures) return kEveryLane;
-  if (const auto* sphere = std::get_if<Sphere>(&shape))
-    return set_points_on(LaneSpheres(*sphere), LanePlaces(m), hits, s);
-  if (const auto* quadric = std::get_if<Quadric>(&shape))
-    return set_points_on(LaneQuadrics(*quadric), LanePlaces(m), hits, s);
-  return kEveryLane;
+std::optional<FlatFace<double>> flat_face_of(const Shape& shape, int face) {
+  return std::visit([&](const auto& kind) { return flat_face(kind, face); }, shape);
 }
 
-/// For shapes that are all of one kind, else nothing. Answers the lanes that are left.
-template <class Shapes>
-uint32_t set_points_on_each(const std::array<const ShapeInstance*, kWidthOf<F>>& placed, const LaneShapes& shapes,
-                            const LaneHits& hits, BasicSurfacePoint<F>& s) {
-  std::array<const Affine3d*, kWidthOf<F>> maps;
-  for (size_t k = 0; k < kWidthOf<F>; ++k) {
-    if (!std::holds_alternative<typename Shapes::Kind>(*shapes[k])) return kEveryLane;
-    maps[k] = &placed[k]->world_from_object;
+/// On one face of one shape that all hits are on; none where it has no lanes' form.
+std::optional<ObjectPoints> points_on_one(const Shape& shape, int face, const Vec3<D>& p_object) {
+  if (const auto flat = flat_face_of(shape, face)) return LaneFlatFaces(*flat).near(p_object);
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return LaneSpheres(*sphere).near(p_object);
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) return LaneCylinders(*cylinder).near(p_object);
+  if (const auto* quadric = std::get_if<Quadric>(&shape)) return LaneQuadrics(*quadric).near(p_object);
+  return {};
+}
+
+/// Sets the points of those lanes that are on a shape of this kind; nulls in `each` are those that are not.
+template <class LaneKind>
+void add_points_on(EachLanes<typename LaneKind::Kind> each, const Vec3<D>& p_object, ObjectPoints& points,
+                   uint32_t& left) {
+  LaneArray<U> here;
+  const typename LaneKind::Kind* some = nullptr;
+  for (size_t k = 0; k < each.size(); ++k) here[k] = each[k] != nullptr, some = each[k] ? each[k] : some;
+  if (!some) return;
+  for (auto& shape : each) shape = shape ? shape : some;
+  const ObjectPoints of_kind = LaneKind(each).near(p_object);
+  const auto set = here.load() != U(0);
+  const auto set_double = convert_mask<D>(set);
+  points = {select(set_double, of_kind.p, points.p), select(set_double, of_kind.n, points.n)};
+  left &= ~lane_bits(set);
+}
+
+/// On the shapes of each lane. Sets the lanes that are `left`.
+ObjectPoints points_on_each(const std::array<const Shape*, kWidthOf<F>>& shapes, const LaneHits& hits,
+                            const Vec3<D>& p_object, uint32_t& left) {
+  std::array<FlatFace<double>, kWidthOf<F>> faces;
+  EachLanes<FlatFace<double>> flat{};
+  EachLanes<Sphere> spheres{};
+  EachLanes<Cylinder> cylinders{};
+  EachLanes<Quadric> quadrics{};
+  for (size_t k = 0; k < shapes.size(); ++k) {
+    if (hits.part[k] == kWallFace) {
+      spheres[k] = std::get_if<Sphere>(shapes[k]), cylinders[k] = std::get_if<Cylinder>(shapes[k]),
+      quadrics[k] = std::get_if<Quadric>(shapes[k]);
+    } else if (const auto face = flat_face_of(*shapes[k], int(hits.part[k]))) {
+      faces[k] = *face, flat[k] = &faces[k];
+    }
   }
-  return set_points_on(Shapes(shapes), LanePlaces(lane_maps(maps)), hits, s);
+  ObjectPoints points{p_object, p_object};
+  left = kEveryLane;
+  add_points_on<LaneFlatFaces>(flat, p_object, points, left);
+  add_points_on<LaneSpheres>(spheres, p_object, points, left);
+  add_points_on<LaneCylinders>(cylinders, p_object, points, left);
+  add_points_on<LaneQuadrics>(quadrics, p_object, points, left);
+  return points;
 }
 
 /// Answers the lanes that are left.
 uint32_t set_points_in_lanes(const Scene& scene, const LaneHits& hits, bool has_textures, BasicSurfacePoint<F>& s) {
   const Geometry& geometry = scene.geometry;
-  std::array<const ShapeInstance*, kWidthOf<F>> placed;
-  LaneShapes shapes;
+  std::array<const Shape*, kWidthOf<F>> shapes;
+  std::array<const Affine3d*, kWidthOf<F>> maps;
   const auto find = [&](size_t k) {
-    placed[k] = &shape_instance(geometry, hits.object[k]), shapes[k] = &geometry.shapes[placed[k]->shape];
+    const ShapeInstance& placed = shape_instance(geometry, hits.object[k]);
+    shapes[k] = &geometry.shapes[placed.shape], maps[k] = &placed.world_from_object;
   };
   find(0);
-  if (lane_bits(on_object_of(hits, 0)) == kEveryLane)
-    return set_points_on_one(*placed[0], *shapes[0], has_textures, hits, s);
+  if (lane_bits(on_part_of(hits, 0)) == kEveryLane) {
+    if (const auto* polygon = std::get_if<Polygon>(shapes[0])) return set_points_on(*polygon, *maps[0], hits, s), 0;
+    if (has_textures) return kEveryLane;
+    const LanePlaces places(*maps[0]);
+    const auto points = points_on_one(*shapes[0], int(hits.part[0]), object_points(hits, places));
+    if (points) place(*points, places, hits, s);
+    return points ? 0 : kEveryLane;
+  }
   if (has_textures) return kEveryLane;
   for (size_t k = 1; k < kWidthOf<F>; ++k) find(k);
-  if (std::holds_alternative<Sphere>(*shapes[0])) return set_points_on_each<LaneSpheres>(placed, shapes, hits, s);
-  if (std::holds_alternative<Quadric>(*shapes[0])) return set_points_on_each<LaneQuadrics>(placed, shapes, hits, s);
-  return kEveryLane;
+  const LanePlaces places(lane_maps(maps));
+  uint32_t left = 0;
+  const ObjectPoints points = points_on_each(shapes, hits, object_points(hits, places), left);
+  place(points, places, hits, s);
+  return left;
 }
 
 void set_points_one_by_one(const Scene& scene, const LaneHits& hits, bool has_textures, uint32_t lanes,
@@ -195,6 +265,8 @@ BasicSurfacePoint<F> surface_points(const Scene& scene, const LaneHits& hits, co
 F mean_curvature(const Scene& scene, const LaneHits& hits, const Attributes& has, const BasicSurfacePoint<F>& points,
                  const std::optional<LaneTriangles>& triangles, const F& width) noexcept {
   if (!triangles) {
+    const ShapeCurvature on_first(scene, hits.object[0], 0);
+    if (on_first.is_even() && lane_bits(on_object_of(hits, 0)) == kEveryLane) return on_first.even(width);
     Vec3Array<D> p;
     Vec3Array<F> ng;
     LaneArray<F> widths, curvature;

@@ -127,9 +127,7 @@ ShapeCurvature::ShapeCurvature(const Scene& scene, uint32_t object, float time)
 }
 
 float ShapeCurvature::at(int face, const Vec3d& p_world, const Vec3f& ng_world, float width) const {
-  if (is_flat_) return 0;
-  if (radius_ > 0)
-    return float(1 / std::max(radius_, double(width)));  // over more than the ball: as if it were as large
+  if (is_even()) return even(width);
   return float(ShapeSurroundings(world_from_object_, shape_, face, p_world, ng_world, double(width)).mean_curvature());
 }
 

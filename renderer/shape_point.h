@@ -17,6 +17,16 @@ class ShapeCurvature {
   /// Over `width` metres about a point on that face; may be infinite or no number.
   [[nodiscard]] float at(int face, const Vec3d& p_world, const Vec3f& ng_world, float width) const;
 
+  /// Whether it is the same about every point, and then what it is.
+  [[nodiscard]] bool is_even() const { return is_flat_ || radius_ > 0; }
+  template <class F>
+  [[nodiscard]] F even(const F& width) const {
+    using D = DoubleOf<F>;
+    if (is_flat_) return F(0);
+    return convert<F>(
+        D(D(1) / larger(convert<D>(width), D(radius_))));  // over more than the ball: as if it were as large
+  }
+
  private:
   Affine3d world_from_object_;
   const Shape& shape_;

@@ -39,13 +39,28 @@ struct Values<Vec3<T>> {
   bool are(size_t k, const Vec3<T>& one) const { return lanes.get(k) == one; }
 };
 
-/// Of `objects`, at points about them; `u` and `v` for triangles.
-LaneHits random_hits(Uniform& uniform, const Scene& scene, const std::vector<uint32_t>& objects) {
+/// One that the shape has.
+uint32_t random_face(Uniform& uniform, const Shape& shape) {
+  const auto one_of = [&](const std::vector<uint32_t>& faces) { return faces[uniform.bits() % faces.size()]; };
+  if (std::holds_alternative<Box>(shape)) return one_of({0, 1, 2, 3, 4, 5});
+  if (std::holds_alternative<Disk>(shape)) return 3;
+  if (std::holds_alternative<Cylinder>(shape)) return one_of({2, 3, kWallFace});
+  if (std::holds_alternative<Quadric>(shape)) return one_of({0, 1, 2, 3, 4, 5, kWallFace, kWallFace});
+  return kWallFace;
+}
+
+/// Of `objects`, at points about them; `u` and `v` for triangles. On one face of each shape, or on any.
+LaneHits random_hits(Uniform& uniform, const Scene& scene, const std::vector<uint32_t>& objects, bool any_face = true) {
   LaneHits hits;
   for (size_t k = 0; k < kLanes; ++k) {
     const uint32_t object = objects[uniform.bits() % objects.size()];
     uint32_t part = 0, primitive = 0;
-    if (!is_shape(scene.geometry, object)) primitive = uniform.bits() % kTriangles;
+    if (!is_shape(scene.geometry, object))
+      primitive = uniform.bits() % kTriangles;
+    else if (any_face || k == 0)
+      part = random_face(uniform, scene.geometry.shapes[shape_instance(scene.geometry, object).shape]);
+    else
+      part = hits.part[0];
     hits.object[k] = object, hits.part[k] = part, hits.primitive[k] = primitive;
     hits.origin.set(k, Vec3f(vector(uniform, 20))), hits.direction.set(k, uniform.direction());
     hits.t[k] = uniform(0, 20);
@@ -81,25 +96,62 @@ testing::AssertionResult are_as_alone(const Scene& scene, const LaneHits& hits, 
   return testing::AssertionSuccess();
 }
 
+/// What has a gradient of 0 on all of it: a double plane; or might: a parabolic cylinder.
+Quadric double_plane(const Vec3d& n, double bend) {
+  Quadric quadric;
+  quadric.coefficients = {n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.x * n.z, n.y * n.z, 0, bend, 0, 0};
+  return quadric;
+}
+
 TEST(LaneSurfaces, PointsOnShapesHaveTheBitsTheyHaveAlone) {
   Uniform uniform(11);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 200; ++i) {
     Scene scene;
     scene.materials.resize(1);
     Quadric quadric;
     for (double& c : quadric.coefficients) c = uniform(-2, 2);
     const Vec3d a = vector(uniform, 3), b = vector(uniform, 3), c = vector(uniform, 3);
-    scene.geometry.shapes = {Sphere{uniform(0.1, 3)}, quadric, make_polygon({{a, b, c}}), Box{}, Disk{}};
-    for (uint32_t shape = 0; shape < 5; ++shape)
+    const Cylinder cone{.height = uniform(0.1, 3), .radius_bottom = uniform(0.1, 3), .radius_top = 0},
+        frustum{.height = uniform(0.1, 3), .radius_bottom = uniform(0.1, 3), .radius_top = uniform(0.1, 3)};
+    scene.geometry.shapes = {Sphere{uniform(0.1, 3)},
+                             quadric,
+                             make_polygon({{a, b, c}}),
+                             Box{Vec3d(2, 3, 4)},
+                             Disk{},
+                             cone,
+                             frustum,
+                             double_plane({1, -2, 4}, 0),
+                             double_plane({3, 0, 0}, uniform(0.1, 1))};
+    const auto shapes = uint32_t(scene.geometry.shapes.size());
+    for (uint32_t shape = 0; shape < shapes; ++shape)
       for (int k = 0; k < 2; ++k) scene.geometry.shape_instances.push_back({shape, 0, 0, random_map(uniform)});
     for (const bool has_textures : {false, true}) {
-      for (uint32_t shape = 0; shape < 5; ++shape) {
-        EXPECT_TRUE(are_as_alone(scene, random_hits(uniform, scene, {2 * shape}), {}, has_textures));
+      for (uint32_t shape = 0; shape < shapes; ++shape) {
+        for (const bool any_face : {false, true})
+          EXPECT_TRUE(are_as_alone(scene, random_hits(uniform, scene, {2 * shape}, any_face), {}, has_textures));
         EXPECT_TRUE(are_as_alone(scene, random_hits(uniform, scene, {2 * shape, 2 * shape + 1}), {}, has_textures));
       }
-      EXPECT_TRUE(are_as_alone(scene, random_hits(uniform, scene, {0, 3, 4, 7, 9}), {}, has_textures));
+      EXPECT_TRUE(are_as_alone(scene, random_hits(uniform, scene, {0, 3, 4, 7, 9, 11, 13, 14, 17}), {}, has_textures));
+      EXPECT_TRUE(are_as_alone(scene, random_hits(uniform, scene, {0, 11, 12}), {}, has_textures));
     }
   }
+}
+
+/// Where a surface has no normal, it turns to whoever looks.
+TEST(LaneSurfaces, SingularPointsTurnToTheRay) {
+  Scene scene;
+  scene.materials.resize(1);
+  Quadric cone;
+  cone.coefficients = {1, -1, 1, 0, 0, 0, 0, 0, 0, 0};
+  scene.geometry.shapes = {cone};
+  scene.geometry.shape_instances.push_back({0, 0, 0, Affine3d{}});
+  LaneHits hits;
+  for (size_t k = 0; k < kLanes; ++k) {
+    hits.object[k] = 0, hits.part[k] = kWallFace, hits.primitive[k] = 0, hits.u[k] = hits.v[k] = 0;
+    hits.origin.set(k, {0, k % 2 ? 0.0f : 3.0f, k % 2 ? 3.0f : 0.0f}), hits.t[k] = 3;
+    hits.direction.set(k, {0, k % 2 ? 0.0f : -1.0f, k % 2 ? -1.0f : 0.0f});
+  }
+  EXPECT_TRUE(are_as_alone(scene, hits, {}, false));
 }
 
 TEST(LaneSurfaces, PointsOnTrianglesHaveTheBitsTheyHaveAlone) {

@@ -33,15 +33,15 @@ std::vector<ExactCrossing> exact_crossings(const Box& box, const ExactLine& line
 
 Bounds3d bounds(const Box& box) noexcept { return {box.size * -0.5, box.size * 0.5}; }
 
-Vec3d project(const Box& box, const Vec3d& p_object, int face) noexcept {
-  const Vec3d outward = normal(box, p_object, face);
-  return p_object - outward * (dot(p_object, outward) - std::abs(dot(box.size, outward)) / 2);
+std::optional<FlatFace<double>> flat_face(const Box& box, int face) noexcept {
+  return flat_face(face, (face & 1 ? 0.5 : -0.5) * box.size[face / 2]);
 }
 
-Vec3d normal(const Box&, const Vec3d&, int face) noexcept {
-  const double side = face & 1 ? 1 : -1;
-  return face < 2 ? Vec3d{side, 0, 0} : face < 4 ? Vec3d{0, side, 0} : Vec3d{0, 0, side};
+Vec3d project(const Box& box, const Vec3d& p_object, int face) noexcept {
+  return project(*flat_face(box, face), p_object);
 }
+
+Vec3d normal(const Box& box, const Vec3d&, int face) noexcept { return normal(*flat_face(box, face)); }
 
 Vec2f texture_coordinates(const Box& box, const Vec3d& p_object, int face) noexcept {
   const FaceFrame frame = face_frame(face);

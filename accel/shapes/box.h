@@ -1,6 +1,7 @@
 // The axis-aligned box of the given size about the origin.
 #pragma once
 
+#include "accel/shapes/flat_face.h"
 #include "accel/shapes/quadric_body.h"
 #include "core/ray.h"
 
@@ -26,6 +27,7 @@ template <class T>
 [[nodiscard]] std::vector<ExactCrossing> exact_crossings(const Box& box, const ExactLine& line);
 
 [[nodiscard]] Bounds3d bounds(const Box& box) noexcept;
+[[nodiscard]] std::optional<FlatFace<double>> flat_face(const Box& box, int face) noexcept;
 [[nodiscard]] Vec3d project(const Box& box, const Vec3d& p_object, int face) noexcept;
 [[nodiscard]] Vec3d normal(const Box& box, const Vec3d& p_object, int face) noexcept;
 

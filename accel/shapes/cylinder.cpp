@@ -8,10 +8,7 @@ namespace {
 
 constexpr int kBottom = 2;
 
-/// Exactly 0 at an apex.
-double radius_at(const Cylinder& c, double y) {
-  return c.radius_top + (c.radius_bottom - c.radius_top) * ((c.height / 2 - y) / c.height);
-}
+CylinderWall<double> wall_of(const Cylinder& c) { return {c.height, c.radius_bottom, c.radius_top}; }
 
 }  // namespace
 
@@ -24,21 +21,19 @@ Bounds3d bounds(const Cylinder& cylinder) noexcept {
   return {{-r, -h, -r}, {r, h, r}};
 }
 
-Vec3d project(const Cylinder& cylinder, const Vec3d& p, int face) noexcept {
-  const double h = cylinder.height / 2;
-  if (face != kWallFace) return {p.x, face == kBottom ? -h : h, p.z};
-  const double distance = std::hypot(p.x, p.z), y = std::clamp(p.y, -h, h), radius = radius_at(cylinder, y);
-  // A hit beside an apex may round onto the axis; any point of the wall is as near then.
-  if (!(distance > 0)) return {radius, y, 0};
-  return {p.x * (radius / distance), y, p.z * (radius / distance)};
+std::optional<FlatFace<double>> flat_face(const Cylinder& cylinder, int face) noexcept {
+  if (face == kWallFace) return {};
+  return flat_face(face, (face == kBottom ? -0.5 : 0.5) * cylinder.height);
 }
 
-Vec3d normal(const Cylinder& cylinder, const Vec3d& p, int face) noexcept {
-  if (face != kWallFace) return {0, face == kBottom ? -1.0 : 1.0, 0};
-  const double distance = std::hypot(p.x, p.z);
-  const double slope = (cylinder.radius_top - cylinder.radius_bottom) / cylinder.height;
-  if (!(distance > 0)) return {0, slope < 0 ? 1.0 : -1.0, 0};
-  return normalize(Vec3d{p.x / distance, -slope, p.z / distance});
+Vec3d project(const Cylinder& cylinder, const Vec3d& p_object, int face) noexcept {
+  const auto cap = flat_face(cylinder, face);
+  return cap ? project(*cap, p_object) : project(wall_of(cylinder), p_object);
+}
+
+Vec3d normal(const Cylinder& cylinder, const Vec3d& p_object, int face) noexcept {
+  const auto cap = flat_face(cylinder, face);
+  return cap ? normal(*cap) : normal(wall_of(cylinder), p_object);
 }
 
 Vec2f texture_coordinates(const Cylinder& cylinder, const Vec3d& p, int face) noexcept {

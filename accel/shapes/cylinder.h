@@ -1,6 +1,7 @@
 // Cylinder, frustum or cone about the y axis, centred on the origin: a wall whose radius is linear in y, and two disks.
 #pragma once
 
+#include "accel/shapes/flat_face.h"
 #include "accel/shapes/quadric_body.h"
 #include "core/ray.h"
 
@@ -10,6 +11,35 @@ struct Cylinder {
   double height = 1, radius_bottom = 0.5, radius_top = 0.5;  // one radius may be 0: a cone
   bool caps = true;                                          // with them, a closed body
 };
+
+/// The wall without caps: of one cylinder, or those of several lanes.
+template <class N>
+struct CylinderWall {
+  N height, radius_bottom, radius_top;
+};
+
+/// A point of the wall nearly nearest to a point: the nearest at its height.
+template <class N>
+[[nodiscard]] Vec3<N> project(const CylinderWall<N>& wall, const Vec3<N>& p_object) {
+  const N half = wall.height / N(2), distance = square_root(p_object.x * p_object.x + p_object.z * p_object.z);
+  const N y = larger(-half, smaller(half, p_object.y));
+  const N radius =  // exactly 0 at an apex
+      wall.radius_top + (wall.radius_bottom - wall.radius_top) * ((half - y) / wall.height);
+  // A hit beside an apex may round onto the axis; any point of the wall is as near then.
+  const auto aside = distance > N(0);
+  const N outward = radius / select(aside, distance, N(1));
+  return {select(aside, p_object.x * outward, radius), y, select(aside, p_object.z * outward, N(0))};
+}
+
+/// Away from the axis; up or down at an apex, where there is no normal.
+template <class N>
+[[nodiscard]] Vec3<N> normal(const CylinderWall<N>& wall, const Vec3<N>& p_object) {
+  const N distance = square_root(p_object.x * p_object.x + p_object.z * p_object.z);
+  const N slope = (wall.radius_top - wall.radius_bottom) / wall.height;
+  const auto aside = distance > N(0);
+  const N length = select(aside, distance, N(1)), axial = select(slope < N(0), N(1), N(-1));
+  return normalize(Vec3<N>{p_object.x / length, select(aside, N(-slope), axial), p_object.z / length});
+}
 
 /// x² + z² <= (m + k y)² for -height/2 <= y <= height/2. The planes in x and z touch nothing.
 template <class N>
@@ -32,6 +62,7 @@ template <class T>
 [[nodiscard]] std::vector<ExactCrossing> exact_crossings(const Cylinder& cylinder, const ExactLine& line);
 
 [[nodiscard]] Bounds3d bounds(const Cylinder& cylinder) noexcept;
+[[nodiscard]] std::optional<FlatFace<double>> flat_face(const Cylinder& cylinder, int face) noexcept;
 [[nodiscard]] Vec3d project(const Cylinder& cylinder, const Vec3d& p_object, int face) noexcept;
 
 /// Away from the axis on the wall (up at an apex, where there is no normal), along the axis on the caps.

@@ -13,9 +13,13 @@ std::vector<ExactCrossing> exact_crossings(const Disk& disk, const ExactLine& li
 
 Bounds3d bounds(const Disk& disk) noexcept { return {{-disk.radius, 0, -disk.radius}, {disk.radius, 0, disk.radius}}; }
 
-Vec3d project(const Disk&, const Vec3d& p_object, int) noexcept { return {p_object.x, 0, p_object.z}; }
+std::optional<FlatFace<double>> flat_face(const Disk&, int) noexcept { return flat_face(3, 0.0); }
 
-Vec3d normal(const Disk&, const Vec3d&, int) noexcept { return {0, 1, 0}; }
+Vec3d project(const Disk& disk, const Vec3d& p_object, int face) noexcept {
+  return project(*flat_face(disk, face), p_object);
+}
+
+Vec3d normal(const Disk& disk, const Vec3d&, int face) noexcept { return normal(*flat_face(disk, face)); }
 
 Vec2f texture_coordinates(const Disk& disk, const Vec3d& p_object, int) noexcept {
   return {float(0.5 + p_object.x / (2 * disk.radius)), float(0.5 + p_object.z / (2 * disk.radius))};

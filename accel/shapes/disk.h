@@ -1,6 +1,7 @@
 // A flat ring in the plane y = 0 about the origin, normal +y.
 #pragma once
 
+#include "accel/shapes/flat_face.h"
 #include "accel/shapes/quadric_body.h"
 #include "core/ray.h"
 
@@ -48,6 +49,7 @@ template <class T>
 [[nodiscard]] std::vector<ExactCrossing> exact_crossings(const Disk& disk, const ExactLine& line);
 
 [[nodiscard]] Bounds3d bounds(const Disk& disk) noexcept;
+[[nodiscard]] std::optional<FlatFace<double>> flat_face(const Disk& disk, int face) noexcept;
 [[nodiscard]] Vec3d project(const Disk& disk, const Vec3d& p_object, int face) noexcept;
 [[nodiscard]] Vec3d normal(const Disk& disk, const Vec3d& p_object, int face) noexcept;
 

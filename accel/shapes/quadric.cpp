@@ -5,15 +5,6 @@
 namespace alhazen {
 namespace {
 
-/// The row of A ... F with the largest entry: where f is the square of a plane, that plane's normal.
-Vec3d largest_row(const Quadric& quadric) {
-  const auto& q = quadric.coefficients;
-  Vec3d best;
-  for (const Vec3d& row : {Vec3d{q[0], q[3], q[4]}, Vec3d{q[3], q[1], q[5]}, Vec3d{q[4], q[5], q[2]}})
-    if (max_component(abs(row)) > max_component(abs(best))) best = row;
-  return best;
-}
-
 struct Interval {
   double lower, upper;
 };
@@ -123,25 +114,19 @@ double reach_from(const Quadric& quadric, const Vec3d& p_object) noexcept {
   return (g + std::sqrt(std::max(g * g - least * f, 0.0))) / least * (1 + rounding);
 }
 
+std::optional<FlatFace<double>> flat_face(const Quadric& quadric, int face) noexcept {
+  if (face == kWallFace) return {};
+  return flat_face(face, (face & 1 ? quadric.box.upper : quadric.box.lower)[face / 2]);
+}
+
 Vec3d project(const Quadric& quadric, const Vec3d& p_object, int face) noexcept {
-  Vec3d p = p_object;
-  if (face != kWallFace) {
-    component(p, face / 2) = (face & 1 ? quadric.box.upper : quadric.box.lower)[face / 2];
-    return p;
-  }
-  return project_to_wall(quadric.coefficients, p);
+  const auto cap = flat_face(quadric, face);
+  return cap ? project(*cap, p_object) : project_to_wall(quadric.coefficients, p_object);
 }
 
 Vec3d normal(const Quadric& quadric, const Vec3d& p_object, int face) noexcept {
-  if (face != kWallFace) {
-    const double side = face & 1 ? 1 : -1;
-    return face < 2 ? Vec3d{side, 0, 0} : face < 4 ? Vec3d{0, side, 0} : Vec3d{0, 0, side};
-  }
-  const Vec3d g = quadric_half_gradient(quadric.coefficients, p_object), row = largest_row(quadric);
-  if (may_be_square(quadric.coefficients) &&
-      max_component(abs(g)) <= 0x1p-20 * max_component(abs(row)) * (1 + max_component(abs(p_object))))
-    return scaled_to_unit(row);
-  return scaled_to_unit(g);
+  const auto cap = flat_face(quadric, face);
+  return cap ? normal(*cap) : wall_normal(quadric.coefficients, p_object);
 }
 
 Vec2f texture_coordinates(const Quadric& quadric, const Vec3d& p, int) noexcept {

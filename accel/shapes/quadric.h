@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "accel/shapes/flat_face.h"
 #include "accel/shapes/quadric_body.h"
 #include "core/lane_vec.h"
 #include "core/ray.h"
@@ -62,6 +63,20 @@ template <class N>
   return {select(any, unit.x, v.x), select(any, unit.y, v.y), select(any, unit.z, v.z)};
 }
 
+/// ∇f / |∇f| at a point of { f = 0 }, towards f > 0. On a double plane, that plane's; zero at other singular points.
+template <class N>
+[[nodiscard]] Vec3<N> wall_normal(const std::array<N, 10>& q, const Vec3<N>& p) {
+  const auto size = [](const Vec3<N>& v) { return larger(absolute(v.x), larger(absolute(v.y), absolute(v.z))); };
+  const Vec3<N> g = quadric_half_gradient(q, p), unit = scaled_to_unit(g);
+  const MaskOf<N> square = may_be_square(q);
+  if (!any_of(square)) return unit;
+  // Where f is the square of a plane, the row of A ... F with the largest entry is that plane's normal.
+  Vec3<N> plane{q[0], q[3], q[4]};
+  for (const Vec3<N>& row : {Vec3<N>{q[3], q[1], q[5]}, Vec3<N>{q[4], q[5], q[2]}})
+    plane = select(size(row) > size(plane), row, plane);
+  return select(square && size(g) <= size(plane) * N(0x1p-20) * (N(1) + size(p)), scaled_to_unit(plane), unit);
+}
+
 /// The box of an ellipsoid's surface, a little enlarged (its centre alone where nothing of it is real); none where
 /// A ... F is not definite.
 [[nodiscard]] std::optional<Bounds3d> ellipsoid_bounds(const std::array<double, 10>& coefficients);
@@ -90,6 +105,7 @@ template <class T>
 /// it.
 [[nodiscard]] double reach_from(const Quadric& quadric, const Vec3d& p_object) noexcept;
 
+[[nodiscard]] std::optional<FlatFace<double>> flat_face(const Quadric& quadric, int face) noexcept;
 [[nodiscard]] Vec3d project(const Quadric& quadric, const Vec3d& p_object, int face) noexcept;
 
 /// ∇f / |∇f|, towards f > 0; on a cap, the box face's. On a double plane, that plane's; zero at other singular points.
