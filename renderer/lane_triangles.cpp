@@ -97,8 +97,10 @@ class FewTriangles {
  public:
   /// `lanes`: the first on each triangle.
   FewTriangles(const Scene& scene, const LaneHits& hits, const std::array<size_t, count>& lanes) {
+    const bool one_part = lane_bits(on_part_of(hits, 0)) == kEveryLane;
     for (size_t i = 0; i < count; ++i) {
-      parts_[i] = &part_of(scene, hits, lanes[i]), triangles_[i] = hits.primitive[lanes[i]];
+      parts_[i] = one_part && i > 0 ? parts_[0] : &part_of(scene, hits, lanes[i]);
+      triangles_[i] = hits.primitive[lanes[i]];
       on_[i] = convert_mask<F>(on_triangle_of(hits, lanes[i]));
     }
   }
