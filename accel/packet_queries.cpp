@@ -157,7 +157,7 @@ void trace_packets(const BuiltScene& built, const RayWave& wave, Coherence coher
 }
 
 /// table[index] in the lanes asked for, anything in the others. Neighbours mostly ask for the same, which is broadcast:
-/// that takes a tenth of a gather's time.
+/// a gather takes its time lane by lane.
 template <class U>
 U look_up(const std::vector<uint32_t>& table, const U& index, uint32_t lanes) {
   if (lanes == 0) return U(0);
