@@ -110,12 +110,10 @@ struct LanePlaces {
 };
 
 /// The hits in the shapes' spaces, about where their surfaces are.
-Vec3<D> object_points(const LaneHits& hits, const Affine3<D>& object_from_world, const Vec3<D>& origin_world) {
-  const Vec3<D> along = convert<D>(hits.direction.load()) * convert<D>(hits.t.load());
-  return transform_vector(object_from_world, convert<D>(hits.origin.load()) - origin_world + along);
-}
 Vec3<D> object_points(const LaneHits& hits, const LanePlaces& places) {
-  return object_points(hits, places.object_from_world, places.world_from_object.origin);
+  const Vec3<D> along = convert<D>(hits.direction.load()) * convert<D>(hits.t.load());
+  const Vec3<D> from_middle = convert<D>(hits.origin.load()) - places.world_from_object.origin;
+  return transform_vector(places.object_from_world, from_middle + along);
 }
 
 /// What `shape_point` does with a point on a shape, but for texture coordinates.
@@ -130,9 +128,9 @@ void place(const ObjectPoints& points, const LanePlaces& places, const LaneHits&
 /// For one polygon, with its texture coordinates: in all lanes lie one plane's.
 void set_points_on(const Polygon& polygon, const Affine3d& m, const LaneHits& hits, BasicSurfacePoint<F>& s) {
   const Vec3d ng = normalize(transform_normal(m, polygon.unit_normal)), center = polygon.center;
-  const Affine3<D> all = broadcast(m);
-  const Vec3<D> p = nearest_in_plane(polygon, object_points(hits, broadcast(inverse(m)), all.origin));
-  s.p_world = transform_point(all, p);
+  const LanePlaces places(m);
+  const Vec3<D> p = nearest_in_plane(polygon, object_points(hits, places));
+  s.p_world = transform_point(places.world_from_object, p);
   s.ng_world = s.ns_world = broadcast<F>(Vec3f(ng));
   s.offset = shape_offset<F>(s.p_world);
   s.tangent_world = broadcast<F>(Vec3f(normalize(transform_vector(m, u_tangent(polygon, center, 0)))));
